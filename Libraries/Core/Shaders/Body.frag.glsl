@@ -145,6 +145,7 @@ void main()
     discard;
   }
 #ifdef DSPACE_ANGLES
+  bodyPlace = hit.unit * bodyRadii;
   vec3 N = normalize(viewFromNormal * normalize(hit.unit / bodyRadii));
   fragColor = photometricAngles(N, hit.positionVC, cameraParallel);
 #elif defined(DSPACE_DISPLAY_COLOR)

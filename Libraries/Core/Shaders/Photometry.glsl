@@ -89,6 +89,9 @@ vec4 photometricAngles(vec3 N, vec3 positionVC, int parallel)
 #ifdef DSPACE_SHADOWED
   lit = sunLit(positionVC, cross(dFdx(positionVC), dFdy(positionVC)));
 #endif
+#ifdef DSPACE_ECLIPSES
+  lit *= sunSeen(DSPACE_ECLIPSE_PLACE);
+#endif
   return vec4(degreesBetween(N, towardsSunVC), degreesBetween(N, V),
     degreesBetween(towardsSunVC, V), 1.0 + (dot(N, towardsSunVC) > 0.0 ? lit : 0.0));
 }

@@ -46,6 +46,9 @@ vec4 mixedColor(vec4 color)
 #ifdef DSPACE_TRACKS
   color.rgb = mix(color.rgb, trackColor.rgb, trackColor.a * clamp(trackAt, 0.0, 1.0));
 #endif
+#ifdef DSPACE_BRIGHTNESS
+  color.rgb *= groundBrightness;
+#endif
 #ifndef DSPACE_UNSHADED
   color.rgb = withStyle(color.rgb);
 #endif

@@ -71,13 +71,22 @@ def test_without_kernels_planets_and_grids_are_drawn(capsys, tmp_path):
 
 
 @pytest.mark.parametrize("arguments", [
-    ("--look-at", "vulcan"), ("--look-at", "moon"), ("--look-at", "sun", "--site", "3,95"),
-    ("--look-at", "sun", "--site", "3"),
-    ("--look-at", "sun", "--time", "1850-01-01 TDB"), ("--look-at", "sun", "--time", "yesterday"), (),
-    ("--look-at", "sun", "--azimuth", "3"), ("--azimuth", "3", "--elevation", "91"), ("--azimuth", "nan"),
-    ("--look-at", "sun", "--fov", "0"), ("--look-at", "sun", "--size", "3"), ("--look-at", "sun", "--exposure", "0"),
+    ("--look-at", "vulcan"), ("--look-at", "moon"),
+    ("--look-at", "sun", "--time", "1850-01-01 TDB"), ("--look-at", "sun", "--time", "yesterday"),
+    ("--azimuth", "3", "--elevation", "91"), ("--azimuth", "nan"),
+    ("--look-at", "sun", "--fov", "0"), ("--look-at", "sun", "--exposure", "0"),
     ("--look-at", "sun", "--body", "vulcan"), ("--look-at", "sun", "--out", "picture.xyz"),
     ("--look-at", "sun", "--kernel", "/nonexistent.bsp")])
 def test_bad_input_is_one_line(capsys, arguments):
     code, out, err = run(capsys, "--time", "2026-11-01", *SITE, *arguments)
     assert code == 1 and out == "" and len(err.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize("arguments", [
+    ("--look-at", "sun", "--site", "3,95"), ("--look-at", "sun", "--site", "3"), (), ("--look-at", "sun", "--azimuth", "3"),
+    ("--look-at", "sun", "--size", "3")])
+def test_a_wrong_command_line_ends_with_2(capsys, arguments):
+    with pytest.raises(SystemExit) as end:
+        main(["sky", "--time", "2026-11-01", *SITE, *arguments])
+    out = capsys.readouterr()
+    assert end.value.code == 2 and out.out == "" and len(out.err.strip().splitlines()) == 1

@@ -6,7 +6,8 @@ import pytest
 
 import dspace
 from dspace.stars import bright_stars
-from dspace.stars.lines import RADIUS, constellations, directions, grid
+from dspace.stars.constellation_names import NAMES
+from dspace.stars.lines import RADIUS, constellation_names, constellations, directions, grid
 
 
 def test_grids_lie_on_their_circles():
@@ -53,6 +54,33 @@ def test_they_are_drawn_as_ornaments():
         assert drawn[20, 20, 0] == 0
         assert view.pick(50, 50) is None
         lines.visible = False
+        assert np.array_equal(view.image(), empty)
+
+
+def test_names_stand_in_the_middle_of_their_figures(tmp_path):
+    assert len(NAMES) == 88 and NAMES["Boo"] == "Boötes" and NAMES["CrA"] == "Corona Australis"
+    path = tmp_path / "lines.json"
+    square = [[-1, -1], [-1, 1], [1, 1], [1, -1], [-1, -1]]  # closed: the first place counts once
+    path.write_text(json.dumps({"features": [
+        {"id": "Ori", "geometry": {"type": "MultiLineString", "coordinates": [square]}},
+        {"id": "mine", "geometry": {"type": "LineString", "coordinates": [[90, 0], [90, 10]]}}]}), encoding="utf-8")
+    names = constellation_names(path)
+    assert [name for name, _ in names] == ["Orion", "mine"]
+    np.testing.assert_allclose(names[0][1], (1, 0, 0), atol=1e-9)
+    np.testing.assert_allclose(names[1][1], directions(90.0, 5.0), atol=1e-9)
+    with dspace.Session() as session:
+        scene = session.scene()
+        scene.add_camera(eye=(0, 0, 0), target=(1, 0, 0), fov_deg=20.0)
+        view = scene.add_viewport(size=(201, 201))
+        empty = view.image()
+        words = scene.add_constellation_names(path, font_size=20)
+        assert [each.name for each in words] == ["constellation Orion", "constellation mine"]
+        drawn = np.abs(view.image().astype(int) - empty).max(axis=2) > 40
+        rows, columns = np.nonzero(drawn)
+        assert len(rows) > 60 and abs(columns.mean() - 100) < 12 and abs(rows.mean() - 100) < 12
+        assert np.array_equal(view.image(physical_only=True), empty) and view.pick(100, 100) is None
+        for each in words:
+            each.remove()
         assert np.array_equal(view.image(), empty)
 
 

@@ -7,8 +7,9 @@ import pytest
 from needs import lacks
 
 import dspace
-from dspace.stars import StarCatalog, bright_stars, read_kstars, read_stars
+from dspace.stars import StarCatalog, bright_stars, read_kstars, read_stars, read_stellarium
 from dspace.stars.kstars import KSTARS_PATH
+from dspace.stars.stellarium import STELLARIUM_PATH
 
 # ICRS places of the epoch and equinox J2000 and V magnitudes (SIMBAD, CDS Strasbourg).
 PUBLISHED = {"Sirius": (101.287155, -16.716116, -1.46), "Vega": (279.234735, 38.783689, 0.03),
@@ -47,6 +48,79 @@ def test_stars_move_and_have_parallax():
     seen = star.directions(observer=across)[0]
     assert arcseconds(now, seen) == pytest.approx(0.547, rel=1e-4)
     assert np.dot(seen - now, across) < 0.0
+
+
+def write_stellarium(path, kind, level, zone, records):
+    """A catalogue of Stellarium whose stars are all in one zone."""
+    sizes = np.zeros(20 * 4 ** level, "<u4")
+    sizes[zone] = len(records)
+    head = np.array([0x835F040A, kind, 0, 0, level], "<u4").tobytes() + np.array([6000, 12800, 256], "<i4").tobytes()
+    path.write_bytes(head + sizes.tobytes() + b"".join(records))
+
+
+def test_stellariums_files(tmp_path):
+    """A zone's centre is that of a face of the icosahedron: a vertex of the dodecahedron."""
+    precise = np.array([(1, 0, 0, 32, 64, 0, 1000, -2000, 54700)], np.dtype("<u4,<i4,<i4,u1,u1,<u2,<i4,<i4,<i4")).tobytes()
+    write_stellarium(tmp_path / "stars_0_0v0_8.cat", 0, 0, 6, [precise])
+    star = read_stellarium(tmp_path)
+    # (+-1, +-1, +-1) and (0, +-1/g, +-g), cyclic, over the root of 3; g is the golden ratio.
+    golden = (1 + 5 ** 0.5) / 2
+    centre = np.sort(np.abs(star.directions()[0])) * 3 ** 0.5
+    assert np.allclose(centre, (1, 1, 1), atol=1e-6) or np.allclose(centre, (0, 1 / golden, golden), atol=1e-6)
+    assert star.magnitude[0] == pytest.approx(6.0 + 64 * 12.8 / 256) and star.color_index[0] == pytest.approx(32 * 4 / 127 - 0.5)
+    assert (star.pm_ra[0], star.pm_dec[0], star.parallax[0]) == pytest.approx((0.1, -0.2, 0.547))
+    bits = (-5 & 0xFFFFF) | 7 << 20 | (-3 & 0x3FFF) << 40 | 9 << 54 | 100 << 68 | 31 << 75
+    write_stellarium(tmp_path / "stars_3_1v0_4.cat", 1, 1, 0, [bits.to_bytes(10, "little")] * 2)
+    both = read_stellarium(tmp_path)
+    assert len(both) == 3 and both.magnitude[2] == pytest.approx(6.0 + 31 * 12.8 / 256)
+    assert both.pm_ra[2] == pytest.approx(-3e-4, rel=1e-3) and both.pm_dec[2] == pytest.approx(9e-4, rel=1e-3)
+    for name, data, text in (("stars_1_0v0_8.cat", b"short", "5 bytes"), ("stars_1_0v0_8.cat", bytes(200), "no star catalogue"),
+                             ("stars_1_0v0_8.cat", (tmp_path / "stars_0_0v0_8.cat").read_bytes()[:-1], "27 bytes follow"),
+                             ("stars_1_0v0_8.cat", (tmp_path / "stars_0_0v0_8.cat").read_bytes()[:60], "within its head")):
+        (tmp_path / name).write_bytes(data)
+        with pytest.raises(dspace.Corrupt, match=text):
+            read_stellarium(tmp_path)
+    with pytest.raises(dspace.NotFound, match="stellarium-data"):
+        read_stellarium(tmp_path / "absent")
+
+
+def test_stellariums_stars_are_those_of_other_catalogues():
+    if not pathlib.Path(STELLARIUM_PATH).is_dir():
+        pytest.skip("the optional package stellarium-data is not installed")
+    stars = read_stellarium()
+    assert len(stars) > 600000
+    # Of 1,000 bright stars each is there, of the same magnitude; with motions, also in 2200.
+    bright = bright_stars().brighter_than(4.6)
+    for epoch, most in ((2000.0, 2.0), (2200.0, 4.0)):
+        cosine = bright.directions(epoch) @ stars.brighter_than(6.0).directions(epoch).T
+        nearest = cosine.argmax(axis=1)
+        apart = [arcseconds(a, b) for a, b in zip(bright.directions(epoch), stars.brighter_than(6.0).directions(epoch)[nearest])]
+        assert np.quantile(apart, 0.9) < most, epoch
+    difference = stars.brighter_than(6.0).magnitude[nearest] - bright.magnitude
+    assert abs(np.median(difference)) < 0.05 and np.quantile(np.abs(difference), 0.9) < 0.2
+
+
+def test_apparent_places_have_aberration_and_refraction():
+    """Aberration: 20.5 arcsec for the Earth's 29.8 km/s across. Refraction: 58.3 arcsec times the tangent at 45 degrees
+    of zenith distance and 1010 hPa, 10 C (C. W. Allen, Astrophysical Quantities)."""
+    star = StarCatalog([0.0], [0.0], [1.0], [0.5], names=["star"])
+    seen = star.apparent(velocity=(0.0, 29.785e3, 0.0))
+    assert 3600.0 * seen.ra_deg[0] == pytest.approx(20.49, abs=0.01) and seen.names == ["star"]
+    assert star.apparent().ra_deg[0] == 0.0
+    zenith = np.array([math.cos(math.pi / 4), math.sin(math.pi / 4), 0.0])
+    lift = arcseconds(star.apparent(zenith=zenith).directions()[0], (1.0, 0.0, 0.0))
+    assert lift == pytest.approx(58.3, abs=6.0)  # the formula states 0.1 arcmin
+    assert star.apparent(zenith=zenith).ra_deg[0] > 0.0  # upwards
+    thin = arcseconds(star.apparent(zenith=zenith, pressure=50500.0, temperature=283.0).directions()[0], (1.0, 0.0, 0.0))
+    assert thin == pytest.approx(0.5 * lift, rel=1e-3)
+    at_horizon = arcseconds(star.apparent(zenith=(0.0, 0.0, 1.0)).directions()[0], (1.0, 0.0, 0.0))
+    assert at_horizon / 60.0 == pytest.approx(29.0, abs=1.0)  # of true height 0; 34.5 seen at 0
+    assert arcseconds(star.apparent(zenith=(-0.2, 1.0, 0.0)).directions()[0], (1.0, 0.0, 0.0)) < 1e-6  # 11 degrees below
+    np.testing.assert_allclose(star.apparent(zenith=(1.0, 0.0, 0.0)).directions()[0], (1.0, 0.0, 0.0), atol=1e-9)
+    with pytest.raises(dspace.InvalidArgument, match="zenith"):
+        star.apparent(zenith=(0.0, 0.0, 0.0))
+    with pytest.raises(dspace.InvalidArgument, match="temperature"):
+        star.apparent(zenith=zenith, temperature=-3.0)
 
 
 @pytest.fixture

@@ -23,6 +23,8 @@
 #include <dspace/ephemeris/SpkSource.h>
 #include <dspace/time/UtcText.h>
 
+#include "JplTestVectors.h"
+
 namespace {
 
 using namespace dspace;
@@ -321,6 +323,57 @@ TEST(Ephemeris, LaterSourcesWinAndTheOthersAreNamed) {
   EXPECT_THROW(ephemeris.Unload("second"), Error);
 }
 
+// Of each vector the number that the ephemeris has for it.
+double NumberFor(const Ephemeris& ephemeris, const JplTestVector& vector) {
+  const double tdb = (vector.jed - 2451545.0) * 86400.0;
+  const State state = ephemeris.Find({vector.target, vector.center}, tdb).state;
+  return vector.coordinate < 3 ? state.position[vector.coordinate] / JplAu
+                               : state.velocity[vector.coordinate - 3] * 86400.0 / JplAu;
+}
+
+// JPL's criterion is 1e-13 (TESTEPH.F); the 13 decimals of the file are worth half of it.
+constexpr double JplTolerance = 1.5e-13;
+
+TEST(Ephemeris, JplsTestVectorsThroughDe405) {
+  if (!De405Source::IsInstalled()) {
+    DSPACE_MISSING_PACKAGE("casacore-data-jpl-de405");
+  }
+  const auto de405 = std::make_shared<De405Source>();
+  Ephemeris ephemeris;
+  ephemeris.Load(de405);
+  int librations = 0;
+  for (const JplTestVector& vector : JplTestVectors) {
+    if (vector.target != Libration) {
+      EXPECT_NEAR(NumberFor(ephemeris, vector), vector.value, JplTolerance) << vector.jed;
+      continue;
+    }
+    const auto found = de405->LibrationAt((vector.jed - 2451545.0) * 86400.0);
+    ASSERT_TRUE(found);
+    const double value = vector.coordinate < 3 ? found->angles[vector.coordinate]
+                                               : found->rates[vector.coordinate - 3] * 86400.0;
+    // The third angle has turned 2,648 rad, of which a double has 5e-13.
+    EXPECT_NEAR(value, vector.value, vector.coordinate == 2 ? 1e-12 : JplTolerance) << vector.jed;
+    ++librations;
+  }
+  EXPECT_EQ(librations, 6);
+}
+
+TEST(Ephemeris, JplsTestVectorsThroughSpk) {
+  for (const char* name : {"de405s_littleendian.bsp", "de405s_bigendian.bsp"}) {
+    DSPACE_REAL_DATA(path, std::string("ephemeris/spice_test_kernels/") + name);
+    Ephemeris ephemeris;
+    ephemeris.Load(std::make_shared<SpkSource>(path));
+    int compared = 0;
+    for (const JplTestVector& vector : JplTestVectors) {
+      if (vector.target != Libration) {
+        EXPECT_NEAR(NumberFor(ephemeris, vector), vector.value, JplTolerance) << vector.jed;
+        ++compared;
+      }
+    }
+    EXPECT_EQ(compared, 80);
+  }
+}
+
 // A source with a warning behind one that ends at 100 s.
 class Worse final : public StateSource {
 public:
@@ -371,6 +424,42 @@ TEST(Fallbacks, EveryTimeIsLookedAt) {
     EXPECT_EQ(warnings({50.0}, correction), std::vector<std::string>{"worse, 7 km off"});
     EXPECT_TRUE(warnings({150.0, 900.0}, correction).empty());
   }
+}
+
+// As DE405 does behind kernels: it has an accuracy, and no warning of its own.
+class Plain final : public StateSource {
+public:
+  explicit Plain(int body) : Line_("plain", body, {{1e10, 0.0, 0.0}, {0.0, 0.0, 0.0}}) {}
+  const std::string& Name() const override { return this->Line_.Name(); }
+  std::string Accuracy(int /*body*/) const override { return "10 m off"; }
+  const std::vector<Coverage>& Coverages() const override { return this->Line_.Coverages(); }
+  std::optional<Link> Find(int body, double tdb) const override {
+    return this->Line_.Find(body, tdb);
+  }
+
+private:
+  Straight Line_;
+};
+
+TEST(Fallbacks, WhatStandsInForAKernelIsNamed) {
+  Ephemeris ephemeris;
+  ephemeris.Load(std::make_shared<Plain>(7), Ephemeris::Priority::Last);
+  const auto warnings = [&](double tdb) {
+    const FallbackScope scope;
+    Ephemeris::Result result;
+    ephemeris.FindMany({7, 0}, &tdb, 1, &result);
+    return scope.Warnings(TimeScales());
+  };
+  EXPECT_TRUE(warnings(1100.0).empty()); // nothing else was loaded for the body
+  ephemeris.Load(std::make_shared<Straight>("kernel", 7, State{}, 0, 0.0, 1000.0));
+  ephemeris.Load(std::make_shared<Straight>("other", 9, State{}, 0, 0.0, 1000.0));
+  EXPECT_TRUE(warnings(900.0).empty());
+  EXPECT_EQ(warnings(1100.0),
+            std::vector<std::string>{"body 7 is taken from plain (10 m off), since kernel does not "
+                                     "cover the time"});
+  EXPECT_EQ(ephemeris.Explain({7, 0}, 1100.0)[0].warning, warnings(1100.0)[0]);
+  ephemeris.Unload("kernel");
+  EXPECT_TRUE(warnings(1100.0).empty());
 }
 
 TEST(Fallbacks, TheInnermostScopeCollects) {

@@ -5,13 +5,9 @@
 // With clang and -DDSPACE_LIBFUZZER=ON it is libFuzzer's program. Else it changes valid kernels of
 // every type that is read, 20,000 times, seed 1 (for five minutes with DSPACE_LONG), or runs the
 // files that it is given. An input that fails is left in the working folder.
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <random>
@@ -25,27 +21,15 @@
 #include <dspace/kernels/CkFile.h>
 #include <dspace/kernels/SpkFile.h>
 
+#include "FuzzMain.h"
 #include "KernelWriter.h"
 #include "TemporaryFolder.h"
 
 using namespace dspace;
+using dspace::testing::Fail;
+using dspace::testing::Try;
 
 namespace {
-
-[[noreturn]] void Fail(const char* what) {
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
-
-template<class Work> void Try(Work work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    if (error.GetKind() == Error::Kind::Internal) {
-      Fail(error.what());
-    }
-  }
-}
 
 void Use(const std::string& path) {
   std::shared_ptr<const DafFile> file;
@@ -234,19 +218,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 #ifndef DSPACE_LIBFUZZER
 int main(int argc, char** argv) {
-  const auto run = [](const std::string& bytes) {
-    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  };
-  if (argc > 1) {
-    for (int i = 1; i < argc; ++i) {
-      Use(argv[i]);
-    }
-    return 0;
-  }
   const dspace::testing::TemporaryFolder folder;
   int good = 0;
   for (const std::string& seed : Seeds()) {
-    run(seed);
     std::ofstream(folder / "seed", std::ios::binary) << seed;
     const auto file = std::make_shared<const DafFile>(folder / "seed"); // throws: a seed is wrong
     if (file->Kind() == "SPK") {
@@ -260,22 +234,6 @@ int main(int argc, char** argv) {
   if (good != int(Seeds().size())) {
     Fail("a kernel to begin with is not read");
   }
-  const char* given = std::getenv("DSPACE_LONG");
-  const bool isLong = given && *given;
-  std::mt19937_64 random(1);
-  const auto began = std::chrono::steady_clock::now();
-  long runs = 0;
-  for (; isLong || runs < 20000; ++runs) {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-    if (spent.count() > (isLong ? 300.0 : 60.0)) {
-      break;
-    }
-    const std::string bytes = Mutate(random);
-    std::ofstream("fuzz-kernels.failure", std::ios::binary) << bytes;
-    run(bytes);
-  }
-  std::filesystem::remove("fuzz-kernels.failure");
-  std::printf("%ld inputs; none failed\n", runs);
-  return 0;
+  return dspace::testing::FuzzMain(argc, argv, "fuzz-kernels", Seeds(), Mutate);
 }
 #endif

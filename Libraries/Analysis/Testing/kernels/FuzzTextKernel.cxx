@@ -5,13 +5,8 @@
 // With clang and -DDSPACE_LIBFUZZER=ON it is libFuzzer's program. Else it makes 20,000 inputs from
 // valid kernels, seed 1 (for five minutes with DSPACE_LONG), or runs the files that it is given. An
 // input that fails is left in the working folder.
-#include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
@@ -25,24 +20,13 @@
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/orientation/Frames.h>
 
+#include "FuzzMain.h"
+
 using namespace dspace;
+using dspace::testing::Fail;
+using dspace::testing::Try;
 
 namespace {
-
-[[noreturn]] void Fail(const char* what) {
-  std::fprintf(stderr, "%s\n", what);
-  std::abort();
-}
-
-template<class Work> void Try(Work work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    if (error.GetKind() == Error::Kind::Internal) {
-      Fail(error.what());
-    }
-  }
-}
 
 std::string Print(const TextKernel& kernel) {
   std::ostringstream out;
@@ -209,37 +193,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 #ifndef DSPACE_LIBFUZZER
 int main(int argc, char** argv) {
-  const auto run = [](const std::string& bytes) {
-    LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  };
-  if (argc > 1) {
-    for (int i = 1; i < argc; ++i) {
-      std::ifstream in(argv[i], std::ios::binary);
-      std::ostringstream bytes;
-      bytes << in.rdbuf();
-      run(bytes.str());
-    }
-    return 0;
-  }
-  for (const std::string& seed : Seeds()) {
-    run(seed);
-  }
-  const char* given = std::getenv("DSPACE_LONG");
-  const bool isLong = given && *given;
-  std::mt19937_64 random(1);
-  const auto began = std::chrono::steady_clock::now();
-  long runs = 0;
-  for (; isLong || runs < 20000; ++runs) {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-    if (spent.count() > (isLong ? 300.0 : 60.0)) {
-      break;
-    }
-    const std::string bytes = Mutate(random);
-    std::ofstream("fuzz-text-kernel.failure", std::ios::binary) << bytes;
-    run(bytes);
-  }
-  std::filesystem::remove("fuzz-text-kernel.failure");
-  std::printf("%ld inputs; none failed\n", runs);
-  return 0;
+  return dspace::testing::FuzzMain(argc, argv, "fuzz-text-kernel", Seeds(), Mutate);
 }
 #endif

@@ -131,6 +131,11 @@ public:
     }
     state.position *= unit;
     state.velocity *= unit * 2.0 / length;
+    if (!state.position.allFinite() || !state.velocity.allFinite()) {
+      throw Error(Error::Kind::Corrupt, this->Label_,
+                  "record " + std::to_string(record) +
+                      " has coefficients that add up to no finite number");
+    }
     return state;
   }
 

@@ -132,6 +132,7 @@ void Ephemeris::Load(std::shared_ptr<const StateSource> source, Priority priorit
   }
   this->Sources_.insert(priority == Priority::First ? this->Sources_.begin() : this->Sources_.end(),
                         std::move(source));
+  this->First_ += priority == Priority::First ? 1 : 0;
   this->Index();
 }
 
@@ -146,6 +147,7 @@ void Ephemeris::Unload(const std::string& name) {
     throw Error(Error::Kind::NotFound, "source '" + name + "'",
                 "it is not loaded; accepted: " + (names.empty() ? "none" : Joined(names)));
   }
+  this->First_ -= std::size_t(found - this->Sources_.begin()) < this->First_ ? 1 : 0;
   this->Sources_.erase(found);
   this->Index();
 }
@@ -181,6 +183,23 @@ std::optional<Ephemeris::Known> Ephemeris::LinkOf(int body, double tdb) const {
     }
   }
   return std::nullopt;
+}
+
+std::string Ephemeris::WarningOf(int body, std::size_t source) const {
+  const StateSource& used = *this->Sources_[source];
+  std::string warning = used.Warning(body);
+  const std::size_t first = this->ByBody_.at(body).front();
+  if (source < this->First_ || first >= this->First_) {
+    return warning;
+  }
+  const std::string accuracy = used.Accuracy(body);
+  const std::string& kernel = this->Sources_[first]->Name();
+  if (!warning.empty()) {
+    return warning + "; " + kernel + " does not cover the time";
+  }
+  return "body " + this->Names_.NameOf(body) + " is taken from " + used.Name() +
+         (accuracy.empty() ? "" : " (" + accuracy + ")") + ", since " + kernel +
+         " does not cover the time";
 }
 
 State Ephemeris::AxesJ2000(const StateSource::Link& link, double tdb) const {
@@ -219,7 +238,7 @@ State Ephemeris::Geometric(int target, int observer, double tdb, std::vector<int
           const std::size_t ends[2] = {turn == 0 ? last : met, turn == 0 ? met : last};
           for (int i = 0; i < 2; ++i) {
             for (std::size_t k = 0; k < ends[i]; ++k) {
-              FallbackScope::Note(this->Sources_[ways[i].sources[k]]->Warning(ways[i].bodies[k]));
+              FallbackScope::Note(this->WarningOf(ways[i].bodies[k], ways[i].sources[k]));
             }
             if (used) {
               used->insert(used->end(), ways[i].bodies.begin(), ways[i].bodies.begin() + ends[i]);
@@ -363,7 +382,7 @@ std::vector<Ephemeris::Used> Ephemeris::Explain(const Query& query, double tdb) 
       used.source = source.Name();
       used.segment = source.Coverages()[std::size_t(link->part)].name;
       used.accuracy = source.Accuracy(body);
-      used.warning = source.Warning(body);
+      used.warning = this->WarningOf(body, index);
     }
     all.push_back(std::move(used));
   }

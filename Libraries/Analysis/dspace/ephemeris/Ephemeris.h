@@ -58,7 +58,7 @@ public:
     std::string source;              // StateSource::Name
     std::string segment;             // Coverage::name
     std::string accuracy;            // StateSource::Accuracy; empty: not stated
-    std::string warning;             // StateSource::Warning
+    std::string warning;             // as a FallbackScope has it
     std::vector<std::string> hidden; // names of sources that know this state too and were not asked
   };
 
@@ -83,7 +83,8 @@ public:
   // Throws Error(NotFound) for a body that no source knows and for an unknown frame,
   // Error(InvalidArgument) for a time outside of what the sources cover, with the spans that they
   // do cover, and what sources throw. Where a state, also one that a light time or an aberration
-  // needs, comes from a source with a warning, a FallbackScope has it.
+  // needs, comes from a source with a warning, a FallbackScope has it; also where a source of
+  // Priority::Last answers for one of Priority::First that knows the body at other times.
   Result Find(const Query& query, double tdb) const;
   // The same for many times; `results` holds `count`.
   void FindMany(const Query& query, const double* tdb, std::size_t count, Result* results) const;
@@ -112,8 +113,11 @@ private:
   Result Evaluate(const Query& query, int frame, double tdb, const StateTurn* turn) const;
   [[noreturn]] void Missing(int body, double tdb) const;
   void Index();
+  // For who uses the link of `body` that this source gave; empty: none.
+  std::string WarningOf(int body, std::size_t source) const;
 
   std::vector<std::shared_ptr<const StateSource>> Sources_;
+  std::size_t First_ = 0; // number of sources of Priority::First, which stand first
   std::unordered_map<int, std::vector<std::size_t>> ByBody_; // sources in the order of search
   std::shared_ptr<const FrameTurns> Frames_;
   BodyNames Names_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 
 #include <dspace/scene/PartLook.h>
 #include <dspace/scene/Stretch.h>
@@ -154,11 +155,15 @@ void DrawList::Flatten(const Scene& scene) {
   this->Objects_.clear();
   this->Templates_.clear();
   this->BatchIndex_.clear();
+  this->Bodies_.clear();
   this->Objects_.reserve(scene.Objects().size());
   for (const auto& entry : scene.Objects()) {
     const GraphicsObject& object = entry.second;
     FlatObject flat{&object, {}};
     flat.body = dynamic_cast<const CelestialBody*>(object.custom.get());
+    if (flat.body && flat.body->Shape().ground != 0) {
+      this->Bodies_.emplace(flat.body->Shape().ground, &object);
+    }
     std::uint32_t number = 0;
     for (const DetailLevel& level : object.levels) {
       FlatLevel flatLevel;
@@ -352,6 +357,40 @@ void DrawList::FindSeen(const Scene& scene, const DrawView& view, const DrawFilt
   }
 }
 
+void DrawList::FindGrounds(const DrawView& view) {
+  this->Covered_.clear();
+  this->TooSmall_.clear();
+  if (this->Bodies_.empty()) {
+    return;
+  }
+  std::map<ObjectId, const GraphicsObject*> grounds; // that are seen
+  for (const SeenObject& seen : this->Seen_) {
+    const GraphicsObject& object = *seen.flat->object;
+    if (this->Bodies_.count(object.id) != 0) {
+      grounds.emplace(object.id, &object);
+    }
+  }
+  for (const SeenObject& seen : this->Seen_) {
+    const GraphicsObject& object = *seen.flat->object;
+    const ObjectId id = seen.flat->body ? seen.flat->body->Shape().ground : 0;
+    const auto ground = grounds.find(id);
+    if (ground == grounds.end() || ground->second->frame != object.frame ||
+        !ground->second->X_FO.isApprox(object.X_FO)) {
+      continue;
+    }
+    const Eigen::Affine3d X_VO = seen.X_VF * object.X_FO;
+    const double radius = seen.flat->body->Shape().radii.maxCoeff() * LargestStretch(X_VO);
+    const double depth = std::max(-X_VO.translation().z(), radius);
+    const double pixel = view.projection.MetresPerPixel(depth, view.height);
+    const bool small = radius < CelestialBody::SmallRadius * pixel * view.samples;
+    if (small) {
+      this->TooSmall_.insert(id);
+    } else {
+      this->Covered_.insert(object.id);
+    }
+  }
+}
+
 double DrawList::HighestToSun() const {
   double highest = -std::numeric_limits<double>::infinity();
   for (const SeenObject& seen : this->Seen_) {
@@ -459,6 +498,7 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
   this->Customs_.clear();
   this->Backdrops_.clear();
   this->FindSeen(scene, view, filter);
+  this->FindGrounds(view);
   this->FindNamed(frames);
   this->FindDepths();
   this->SetDepths(view);
@@ -474,7 +514,14 @@ void DrawList::Build(const Scene& scene, DrawView& view, const DrawFilter& filte
       continue;
     }
     if (object.custom) {
-      this->Customs_.push_back({&object, seen.X_VF * object.X_FO});
+      if (this->TooSmall_.count(object.id) != 0) {
+        ++this->Culled_;
+        continue;
+      }
+      const auto body = this->Bodies_.find(object.id);
+      this->Customs_.push_back({&object, seen.X_VF * object.X_FO,
+                                body == this->Bodies_.end() ? nullptr : body->second,
+                                this->Covered_.count(object.id) != 0});
       continue;
     }
     std::size_t level = 0;

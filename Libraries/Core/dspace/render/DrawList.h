@@ -73,6 +73,8 @@ struct DrawLight {
 struct DrawCustom {
   const GraphicsObject* object = nullptr; // of the scene, as it was when the list was built
   Eigen::Affine3d X_VO = Eigen::Affine3d::Identity(); // OpenGL's view axes from the object's frame
+  const GraphicsObject* body = nullptr; // of terrain: the body whose ground it is (BodyShape)
+  bool covered = false;                 // of a body: its ground is drawn in place of its surface
 };
 
 // A body of the scene (scene/bodies) as the camera sees it, whether it is drawn or not.
@@ -201,6 +203,7 @@ private:
   void Flatten(const Scene& scene);
   void FindSeen(const Scene& scene, const DrawView& view, const DrawFilter& filter);
   void PlaceBodies(const Scene& scene, const Pose& X_CA);
+  void FindGrounds(const DrawView& view);
   void FindDepths();
   void SetDepths(DrawView& view) const;
   // Finds what labels name: of each frame with a billboard, but the root, the seen objects on it
@@ -226,6 +229,10 @@ private:
 
   std::vector<Pose> X_AF_;
   std::vector<SeenObject> Seen_;
+  std::unordered_map<ObjectId, const GraphicsObject*>
+      Bodies_;                  // by the terrain that is their ground
+  std::set<ObjectId> Covered_;  // seen bodies whose ground is drawn
+  std::set<ObjectId> TooSmall_; // grounds whose body is drawn
   std::unordered_map<FrameId, std::vector<const SeenObject*>> Named_; // into Seen_
   std::vector<DrawInstance> Instances_;
   std::vector<DrawBatch> Batches_;

@@ -169,7 +169,9 @@ void SceneDrawer::DrawBatches(const DrawList& list, const DrawView& view, bool t
     wanted |= batch.texture && !planes ? SurfaceShaders::Texture : 0u;
     wanted |= planes ? SurfaceShaders::Lit : 0u;
     if (!labels && !planes) {
-      wanted |= !batch.lit ? 0u : angles ? SurfaceShaders::ShadowFeatures(view) : lighting;
+      wanted |= angles       ? SurfaceShaders::AngleFeatures(list, view, batch.lit)
+                : !batch.lit ? 0u
+                             : lighting;
       wanted |= batch.lit && batch.specular && !angles ? SurfaceShaders::Specular : 0u;
       wanted |= angles ? 0u : SurfaceShaders::ReflectanceFeature(batch.reflectance);
       wanted |= !batch.lit && this->Light_ ? SurfaceShaders::DisplayColor : 0u;

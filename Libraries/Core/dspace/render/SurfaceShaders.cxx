@@ -90,6 +90,14 @@ SurfaceShaders::Features SurfaceShaders::LightFeatures(const DrawList& list, con
   return features;
 }
 
+SurfaceShaders::Features SurfaceShaders::AngleFeatures(const DrawList& list, const DrawView& view,
+                                                       bool lit) {
+  if (!lit) {
+    return Angles;
+  }
+  return Angles | ShadowFeatures(view) | (LightFeatures(list, view) & Features(Eclipses));
+}
+
 SurfaceShaders::Features SurfaceShaders::ReflectanceFeature(const Reflectance& reflectance) {
   const auto model = static_cast<unsigned>(reflectance.model);
   return model > static_cast<unsigned>(Reflectance::Model::Lambert) ? model << ReflectanceShift : 0;
@@ -194,7 +202,7 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(Features features, const Shad
     Replace(made.fragment, "//DSPACE::Functions", pages.fragment ? pages.fragment : "");
   }
   Replace(made.fragment, "//DSPACE::Lighting",
-          std::string(Shadow) + Photometry + Eclipse + Lighting);
+          std::string(Shadow) + Eclipse + Photometry + Lighting);
   Replace(made.fragment, "//DSPACE::Peeling", DepthPeel);
   Replace(made.fragment, "//DSPACE::Tone", Tone);
   return made;

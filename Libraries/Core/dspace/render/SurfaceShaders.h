@@ -89,6 +89,10 @@ public:
     return features & ~(Features(3) << GroundShift);
   }
 
+  // Those of photometric angles; lit ones with the part of the Sun's disc that shadows and bodies
+  // leave.
+  static Features AngleFeatures(const DrawList& list, const DrawView& view, bool lit);
+
   // The feature of a lit surface's photometric model; 0: that of the default, or of Lambert.
   static Features ReflectanceFeature(const Reflectance& reflectance);
   // Sets its parameters in a program with this feature.

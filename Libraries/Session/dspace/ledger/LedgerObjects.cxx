@@ -234,6 +234,10 @@ void LedgerObjects::PutObject(const std::string& scene, std::uint32_t id, const 
     out.push_back(*entry.create);
     SettingsOf(out.back())->set_frame(entry.frame);
     SettingsOf(out.back())->set_fragment(entry.fragment);
+    if (out.back().has_create_body() &&
+        this->Objects_.count(out.back().create_body().ground()) == 0) {
+      out.back().mutable_create_body()->clear_ground(); // the terrain has been removed
+    }
   }
   if (entry.createdOn != NoFrame && entry.frame != entry.createdOn) {
     add().mutable_attach_object()->set_object(id);

@@ -249,6 +249,7 @@ std::vector<Named> ClipmapLooks(const PostPlacement& placement) {
   const std::vector<Named> beside = {
       {"holes", "#define DSPACE_HOLES\n"},
       {"tracks", "#define DSPACE_TRACKS\n"},
+      {"ground of a body", "#define DSPACE_BRIGHTNESS\n"},
       {"paint", "#define DSPACE_LAYERS\n#define DSPACE_PAINT 0\n"},
       {"marks", "#define DSPACE_LAYERS\n#define DSPACE_MARKS 0\n"},
       {"layers", "#define DSPACE_LAYERS\n#define DSPACE_PAINT 0\n#define DSPACE_MARKS 16\n"},
@@ -410,11 +411,13 @@ void Programs::AddBodies() {
   }
   pages.defines.clear();
   for (const Shaders::Features features :
-       {Shaders::Angles | Shaders::Lit, Shaders::Features(Shaders::Angles)}) {
+       {Shaders::Angles | Shaders::Lit, Shaders::Angles | Shaders::Lit | Shaders::Eclipses,
+        Shaders::Features(Shaders::Angles)}) {
     this->Add("body", features, pages, nullptr, true);
   }
   this->Add("body", lit | 4u << Shaders::CascadeShift, pages, nullptr, true);
   this->Add("surface", placed | Shaders::Eclipses, {}, nullptr, true);
+  this->Add("surface", Shaders::Angles | Shaders::Lit | Shaders::Eclipses, {}, nullptr, true);
   for (const Shaders::Features features :
        {Shaders::Features(0), Shaders::Features(Shaders::Eclipses)}) {
     pages.whole = air.c_str();

@@ -1,7 +1,9 @@
 """The `dspace` command. Each subcommand has a module, which defines its arguments and executes it.
 
-Exit code: 0 on success; 1 when something failed, with one line on the error stream that names it; 2 when the command
-line itself is wrong.
+Exit code: 0 on success. 2 when the command line itself is wrong: unknown, missing or contradicting options, and values
+that have not the form that the help states. 1 when it was understood and something failed or was rejected (a name, a time,
+a file, a value out of range), with one line on the error stream that names it; also for the answers "they differ" (log
+diff) and "not all" (camera check, log pack, log salvage). 130 when it was interrupted.
 """
 import argparse
 import contextlib

@@ -1,10 +1,12 @@
 """`dspace sky`: the sky over a site as a picture, and the direction of a body."""
+import argparse
 import json
 import math
 import pathlib
 import sys
 
 from dspace.command_line import Failed
+from dspace.command_line import terrain as values
 from dspace.errors import InvalidArgument, NotFound
 
 BODIES = ("sun", "moon", "mercury", "venus", "earth", "mars", "jupiter", "saturn", "uranus", "neptune")
@@ -18,22 +20,25 @@ def add_arguments(parser):
     parser.add_argument("--time", required=True, metavar="UTC",
                         help="UTC in ISO 8601, or with ' TDB', ' TT' or ' TAI' behind it")
     parser.add_argument("--body", default="earth", metavar="BODY", help="the body that the site is on (default: earth)")
-    parser.add_argument("--site", required=True, metavar="LON,LAT[,H]",
+    parser.add_argument("--site", type=site_of, required=True, metavar="LON,LAT[,H]",
                         help="longitude (east) and planetocentric latitude [deg], height above the ellipsoid [m] "
                         "(default: 0)")
-    parser.add_argument("--look-at", metavar="BODY", help="the body in the middle of the picture; its place is printed")
-    parser.add_argument("--azimuth", type=float, metavar="DEG", help="of the camera, clockwise from north")
+    look = parser.add_mutually_exclusive_group(required=True)
+    look.add_argument("--look-at", metavar="BODY", help="the body in the middle of the picture; its place is printed")
+    look.add_argument("--azimuth", type=float, metavar="DEG", help="of the camera, clockwise from north")
     parser.add_argument("--elevation", type=float, metavar="DEG", help="of the camera, -90 to 90 (default: 0)")
     parser.add_argument("--fov", type=float, default=45.0, metavar="DEG",
                         help="height of the picture, 0.001 to 170 (default: 45)")
-    parser.add_argument("--size", default="1280x720", metavar="WxH", help="pixels (default: 1280x720)")
+    parser.add_argument("--size", type=values.size, default=(1280, 720), metavar="WxH", help="pixels (default: 1280x720)")
     parser.add_argument("--exposure", type=float, default=1.0, metavar="X",
                         help="a factor, 1e-12 to 1e12: 1 suits sunlit ground (default: 1)")
     parser.add_argument("--catalogue", metavar="CSV", help="stars with columns ra_deg, dec_deg, magnitude, color_index "
                         "(default: the Bright Star Catalogue)")
     parser.add_argument("--kernel", action="append", nargs="+", default=[], metavar="FILE",
                         help="SPICE kernels; later ones are asked first")
-    parser.add_argument("--grid", choices=("horizon", "equatorial"), help="meridians and parallels over the picture")
+    parser.add_argument("--grid", choices=("horizon", "equatorial", "ecliptic"), help="meridians and parallels over the picture")
+    parser.add_argument("--constellations", metavar="JSON", help="figures and names of constellations: a GeoJSON file of "
+                        "lines, such as d3-celestial's")
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--out", metavar="PNG", help="the picture; without it, none is drawn")
     parser.set_defaults(run=run)
@@ -41,9 +46,7 @@ def add_arguments(parser):
 
 def run(options):
     import dspace
-    site, size = site_of(options.site), size_of(options.size)
-    if (options.look_at is None) == (options.azimuth is None):
-        raise Failed("--look-at, --azimuth: accepted: one of them")
+    site, size = options.site, options.size
     if options.elevation is not None and options.azimuth is None:
         raise Failed("--elevation: accepted: with --azimuth")
     check("--azimuth", options.azimuth, -360.0, 360.0)
@@ -88,18 +91,11 @@ def site_of(text):
     except ValueError:
         numbers = []
     if len(numbers) not in (2, 3) or not all(map(math.isfinite, numbers)):
-        raise Failed(f"--site {text!r}: {accepted}")
+        raise argparse.ArgumentTypeError(f"{text!r}; {accepted}")
     longitude, latitude, height = (*numbers, 0.0)[:3]
     if not (abs(longitude) <= 360.0 and abs(latitude) <= 90.0):
-        raise Failed(f"--site {text!r}: {accepted}")
+        raise argparse.ArgumentTypeError(f"{text!r}; {accepted}")
     return longitude, latitude, height
-
-
-def size_of(text):
-    width, _, height = text.partition("x")
-    if not (width.isdecimal() and height.isdecimal() and 0 < int(width) <= 16384 and 0 < int(height) <= 16384):
-        raise Failed(f"--size {text!r}: accepted: WxH, 1 to 16384 pixels each")
-    return int(width), int(height)
 
 
 def sky_of(scene, name, body, site):
@@ -112,15 +108,11 @@ def sky_of(scene, name, body, site):
         return scene.sky(name + " barycenter", body=body, site=site)[name + " barycenter"]
 
 
-def axes_of(name):
-    """The body-fixed reference frame of a body."""
-    return {"moon": "MOON_ME", "earth": "ITRF93"}.get(name, f"IAU_{name.upper()}")
-
-
 def draw(scene, options, site, size, azimuth, elevation):
     """Writes the picture. The scene's root is the centre of the site's body with J2000's axes, which the stars have.
     Bodies are at their apparent places from that centre, with light time and aberration: within 0.4 arcsec of the
     printed place, because a site on the Earth moves about the centre at up to 0.47 km/s."""
+    from dspace.sky.places import axes_of
     from dspace.stars import read_stars
     place = scene.add_celestial_frame("site", options.body, site=site, center=options.body)
     columns = {name: name for name in ("ra_deg", "dec_deg", "magnitude", "color_index")}
@@ -139,8 +131,11 @@ def draw(scene, options, site, size, azimuth, elevation):
         scene.add_body(name, frame=frame)
     if options.grid == "horizon":
         scene.add_sky_grid("horizon", frame=place)
-    elif options.grid == "equatorial":
-        scene.add_sky_grid("equatorial")
+    elif options.grid is not None:
+        scene.add_sky_grid(options.grid)
+    if options.constellations is not None:
+        scene.add_constellations(options.constellations)
+        scene.add_constellation_names(options.constellations)
     a, e = math.radians(azimuth), math.radians(elevation)
     ahead = (math.cos(e) * math.sin(a), math.cos(e) * math.cos(a), math.sin(e))
     up = (0.0, 0.0, 1.0) if abs(elevation) < 89.999 else (math.sin(a), math.cos(a), 0.0)

@@ -10,7 +10,6 @@ from dspace.errors import InvalidArgument, NotFound, WrongType
 from dspace.frames.frame import put_pose
 from dspace.frames.poses import Pose, quaternion_of_axis, to_pose
 from dspace.objects.assemblies import is_assembly, load_assembly
-from dspace.objects.bodies import put_atmosphere, put_rings
 from dspace.objects.graphics import (UP, GraphicsObject, Primitive, Stars, Text, TiltMarker, Trail, put_rotation,
                                      put_settings)
 from dspace.objects.meshes import Mesh, put_mesh_levels
@@ -18,7 +17,7 @@ from dspace.objects.models import Model
 from dspace.objects.polydata import make_polydata
 from dspace.objects.robots import Robot
 from dspace.stars.catalog import StarCatalog, bright_stars
-from dspace.stars.lines import constellations
+from dspace.stars.lines import RADIUS, constellation_names, constellations
 from dspace.stars.lines import grid as sky_grid
 
 # The rotation that turns a file's axis to Z.
@@ -366,48 +365,37 @@ class ObjectFactory:
         points, lines = constellations(path)
         return self._add_sky_lines(points, lines, "constellations", color, settings)
 
+    def add_constellation_names(self, path, color=(0.6, 0.75, 0.7), font_size=14, **settings):
+        """Adds the Latin names of the constellations of a file that add_constellations reads, each in the middle of its
+        figure, as ornamental labels. Returns a list of Text; a `fragment` shows and hides all of them at once.
+
+        color, font_size [pixels]: as for add_label. A figure whose id is not an abbreviation of the IAU keeps it as its
+        name."""
+        made = []
+        given = {"color": color, "font_size": font_size, "background_opacity": 0.0, "pickable": False, **settings}
+        size = number(font_size, "the font size", "constellation names")
+        for name, direction in constellation_names(path):
+            try:
+                # A letter is about half as wide as the font is high: the word's middle is at the place.
+                made.append(self.add_label(name, position=RADIUS * direction, name=self._free(f"constellation {name}"),
+                                           **{"offset": (-0.26 * size * len(name), -0.35 * size), **given}))
+            except Exception:
+                for text in made:
+                    text.remove()
+                raise
+        return made
+
+    def _free(self, name):
+        """The name, or with a number the first that no object has."""
+        taken = self._scene.objects
+        return name if name not in taken else next(f"{name} {i}" for i in range(2, len(taken) + 3)
+                                                   if f"{name} {i}" not in taken)
+
     def _add_sky_lines(self, points, lines, name, color, settings):
         given = {"lit": False, "ornamental": True, "pickable": False, "color": color, **settings}
         if given.get("name") is None:
-            taken = self._scene.objects
-            given["name"] = name if name not in taken else next(
-                f"{name} {i}" for i in range(2, len(taken) + 3) if f"{name} {i}" not in taken)
+            given["name"] = self._free(name)
         return self.add_mesh(points, lines=lines, **given)
-
-    def add_body(self, body=None, radii=None, texture=None, left_edge_deg=None, geodetic=None, albedo=None, sun=None,
-                 eclipses=None, rings=None, atmosphere=None, **settings):
-        """Adds the Sun, a planet or a moon: an ellipsoid that is seen from the ground to where it is a point.
-
-        body: "sun", "earth", "moon", "mars", "saturn", ... (an unknown name lists all; radii of IAU's report of 2015), or any
-        other by its radii [m], a number or three along X, Y, Z. Its axes are those of `frame`: X to longitude 0, Z to the
-        north pole. The object's name is the body's unless given.
-        texture: an image in plate carree from pole to pole, whose left edge has the longitude left_edge_deg (default
-        -180). Its rows are planetocentric latitudes; geodetic=True (default for the Earth): geodetic ones.
-        albedo: geometric albedo to which colour and texture are scaled; default: without texture and colour that of the
-        body, else they are taken as they are. Photometry: reflectance=; default by body (the Moon: lunar-Lambert).
-        sun: it is the Sun (default for "sun"): the light "sun" then comes from it, its irradiance is that at 1 au, and
-        bodies with `eclipses` (default: all others) hide it from other things, penumbra included.
-        rings: (inner, outer [m], optical depth[, colour]) each, from the inside out; () for none; default: Saturn's own.
-        atmosphere: a dict of top, rayleigh, rayleigh_height, mie, mie_extinction, mie_height, mie_asymmetry [m, 1/m], or
-        False for none; default: those of the Earth and of Mars (single scattering of Rayleigh's kind and by haze).
-        What is smaller than a few pixels shares out the light of its disc among them: it keeps its irradiance."""
-        command = self._scene._command()
-        message = command.create_body
-        if body is not None and (not isinstance(body, str) or not body):
-            reject("body", "the body", body, "a name, or None with radii", WrongType)
-        label = put_settings(self._scene, message.object, f"body {body!r}" if body else "body", texture=texture, **settings)
-        put_given(message, label, left_edge_deg=left_edge_deg, geodetic=geodetic, albedo=albedo, sun=sun,
-                  eclipses=eclipses)
-        if body is not None:
-            put(message, label, body=body)
-        if radii is not None:
-            given = array_of(radii, "radii", "a number, or three", label)
-            if given.shape not in ((), (3,)):
-                raise InvalidArgument(f"{label}: radii have the shape {given.shape}; accepted: a number, or three [m]")
-            put_vector(message.radii, np.broadcast_to(given, 3), "the radii", label)
-        put_rings(message, rings, label)
-        put_atmosphere(message, atmosphere, label)
-        return self._make(command, GraphicsObject)
 
     def add_mesh(self, points, triangles=None, lines=None, normals=None, colors=None, scalars=None, colormap=None,
                  low=None, high=None, tcoords=None, pixels=0.0, levels=(), **settings):

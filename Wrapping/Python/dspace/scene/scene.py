@@ -30,6 +30,7 @@ from dspace.objects.robots import Robot
 from dspace.objects.sensors import SensorFactory
 from dspace.objects.trajectories import TrajectoryFactory
 from dspace.proto import commands_pb2 as pb
+from dspace.scene.bodies import BodyFactory
 from dspace.scene.exports import SceneExports
 from dspace.scene.membership import SceneMembership
 from dspace.scene.shine import Shine
@@ -250,10 +251,11 @@ class Scene(Strict):
     add_text = delegate(ObjectFactory, "add_text")
     add_label = delegate(ObjectFactory, "add_label")
     add_trail = delegate(ObjectFactory, "add_trail")
-    add_body = delegate(ObjectFactory, "add_body")
+    add_body = delegate(BodyFactory, "add_body")
     add_stars = delegate(ObjectFactory, "add_stars")
     add_sky_grid = delegate(ObjectFactory, "add_sky_grid")
     add_constellations = delegate(ObjectFactory, "add_constellations")
+    add_constellation_names = delegate(ObjectFactory, "add_constellation_names")
     add_trajectory = delegate(TrajectoryFactory, "add_trajectory")
     orbit = delegate(TrajectoryFactory, "orbit")
     body_path = delegate(TrajectoryFactory, "body_path")

@@ -3,6 +3,11 @@ from dspace._core.fields import flag, numbers, put, reject, text
 from dspace.errors import WrongType
 
 
+def axes_of(body):
+    """The reference frame that turns with a body, by the body's name."""
+    return {"moon": "MOON_ME", "earth": "ITRF93"}.get(body.lower(), f"IAU_{body.upper()}")
+
+
 def put_place(message, body, axes, site, geodetic, about):
     """Writes a body (a name or NAIF id), a reference frame (or None) and a site (longitude, latitude[, height]; or
     None) into a CelestialPlace."""

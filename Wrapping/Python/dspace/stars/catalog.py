@@ -12,6 +12,7 @@ from dspace.errors import InvalidArgument, Io, NotFound
 COLUMNS = ("ra_deg", "dec_deg", "magnitude", "color_index", "pm_ra", "pm_dec", "parallax", "name")
 NEEDED = COLUMNS[:3]
 ARCSECOND = np.pi / 648000.0
+SPEED_OF_LIGHT = 299792458.0  # [m/s]
 
 
 class StarCatalog:
@@ -80,6 +81,44 @@ class StarCatalog:
         moved = toward + years * ARCSECOND * (self.pm_ra[:, None] * east + self.pm_dec[:, None] * north)
         moved = moved - ARCSECOND * self.parallax[:, None] * place
         return moved / np.linalg.norm(moved, axis=1, keepdims=True)
+
+    def apparent(self, epoch=2000.0, observer=(0.0, 0.0, 0.0), velocity=(0.0, 0.0, 0.0), zenith=None, pressure=101000.0,
+                 temperature=283.0):
+        """The stars where an observer sees them at an epoch, as a StarCatalog without motions: for pictures that are
+        compared with photographs.
+
+        epoch, observer: as for directions(). velocity: the observer's from the solar system's barycentre [m/s], in the
+        same axes, for aberration (to first order: 1e-8 rad remain for the Earth's velocity). zenith: the direction of the
+        vertical at the site, in the same axes; stars above it are then lifted by the air of `pressure` [Pa] and
+        `temperature` [K] there, as T. Saemundsson has it (Sky & Telescope 72 (1986) 70), to 0.1 arcmin; those
+        more than a degree below the horizon stay."""
+        about = "apparent places"
+        seen = self.directions(epoch, observer) + np.array(numbers(velocity, 3, "the velocity", about)) / SPEED_OF_LIGHT
+        seen /= np.linalg.norm(seen, axis=1, keepdims=True)
+        if zenith is not None:
+            up = np.array(numbers(zenith, 3, "the zenith", about))
+            if not np.linalg.norm(up) > 0.0:
+                reject(about, "the zenith", zenith, "a vector that is not 0")
+            air = number(pressure, "the pressure", about) / 101000.0 * 283.0 / number(temperature, "the temperature", about)
+            if not 0.0 <= air <= 1000.0:
+                reject(about, "pressure and temperature", (pressure, temperature), "0 Pa or more, above 0 K")
+            seen = _lifted(seen, up / np.linalg.norm(up), air)
+        return StarCatalog(np.degrees(np.arctan2(seen[:, 1], seen[:, 0])) % 360.0,
+                           np.degrees(np.arcsin(np.clip(seen[:, 2], -1.0, 1.0))), self.magnitude, self.color_index,
+                           names=self.names)
+
+
+def _lifted(directions, up, air):
+    """Unit vectors turned towards the zenith by refraction; air: its density by that of 101 kPa and 10 C."""
+    sine = directions @ up
+    level = directions - sine[:, None] * up
+    length = np.linalg.norm(level, axis=1, keepdims=True)
+    height = np.degrees(np.arctan2(sine, length[:, 0]))
+    above = np.maximum(height, -1.0)
+    lift = np.where(height > -1.0, air * 1.02 / 60.0 / np.tan(np.radians(above + 10.3 / (above + 5.11))), 0.0)
+    angle = np.radians(np.minimum(height + np.maximum(lift, 0.0), 90.0))[:, None]
+    level = np.divide(level, length, out=np.zeros_like(level), where=length > 1e-12)
+    return np.cos(angle) * level + np.sin(angle) * up
 
 
 def _column(values, what, about, count=None, absent=None):

@@ -5,6 +5,7 @@ import numpy as np
 
 from dspace._core.fields import file_path, number, reject, word
 from dspace.errors import Corrupt, Io, NotFound
+from dspace.stars.constellation_names import NAMES
 
 RADIUS = 1e17  # [m]: a step of one astronomical unit moves the lines by 0.3 arcsec
 OBLIQUITY = np.radians(84381.448 / 3600.0)  # of the ecliptic of J2000 (IAU 1976), as ECLIPJ2000 has it
@@ -59,27 +60,26 @@ def grid(kind, step_deg, about):
     return points, lines
 
 
-def constellations(path):
+def figures(path):
     """The figures of a GeoJSON file whose longitudes are right ascensions and whose latitudes are declinations [deg], such
-    as constellations.lines.json of d3-celestial (O. Frohn, BSD-3). Points and lines as joined() has them."""
+    as constellations.lines.json of d3-celestial (O. Frohn, BSD-3): of each its id and arrays of unit vectors, a line each."""
     path = file_path(path, "the path", "constellations")
     label = f"file {path!r}"
+    found = []
     try:
         with open(path, encoding="utf-8") as file:
-            found = json.load(file)
-        figures = [(feature.get("id", "?"), feature["geometry"]) for feature in found["features"]]
-        curves = []
-        for name, geometry in figures:
+            given = json.load(file)
+        for name, geometry in [(feature.get("id", "?"), feature["geometry"]) for feature in given["features"]]:
             if geometry["type"] not in ("LineString", "MultiLineString"):
                 raise Corrupt(f"{label}: the geometry of {name!r} is a {geometry['type']}; accepted: LineString, "
                               f"MultiLineString", label)
             rows = [geometry["coordinates"]] if geometry["type"] == "LineString" else geometry["coordinates"]
+            found.append((str(name), []))
             for row in rows:
                 at = np.array(row, float)
                 if at.ndim != 2 or at.shape[1] < 2 or len(at) < 2 or not np.all(np.abs(at[:, 1]) <= 90.0):
                     raise Corrupt(f"{label}: a line of {name!r} has no two places of right ascension and declination", label)
-                ends = directions(at[:, 0], at[:, 1])
-                curves.extend(great_arc(a, b) for a, b in zip(ends[:-1], ends[1:]))
+                found[-1][1].append(directions(at[:, 0], at[:, 1]))
     except Corrupt:
         raise
     except FileNotFoundError:
@@ -88,6 +88,22 @@ def constellations(path):
         raise Io(f"{label}: {error.strerror}", label) from None
     except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise Corrupt(f"{label}: it is no GeoJSON of lines ({error})", label) from None
-    if not curves:
+    if not any(lines for _, lines in found):
         raise Corrupt(f"{label}: it has no lines; accepted: one or more", label)
-    return joined(curves)
+    return found
+
+
+def constellations(path):
+    """The lines of figures(), as arcs of great circles. Points and lines as joined() has them."""
+    return joined([great_arc(a, b) for _, lines in figures(path) for ends in lines for a, b in zip(ends[:-1], ends[1:])])
+
+
+def constellation_names(path):
+    """Of each of figures(): the constellation's Latin name, or its id where that is no IAU abbreviation, and a unit vector
+    to the middle of its places, each counted once."""
+    places = []
+    for name, lines in figures(path):
+        if lines:
+            middle = np.unique(np.concatenate(lines).round(9), axis=0).mean(axis=0)
+            places.append((NAMES.get(name, name), middle / np.linalg.norm(middle)))
+    return places

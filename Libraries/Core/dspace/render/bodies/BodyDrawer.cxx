@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "vtk_glew.h"
 
@@ -136,10 +137,13 @@ void BodyDrawer::DrawBox() {
 }
 
 bool BodyDrawer::IsSmall(const BodyView& body, const CustomDrawing& drawing) {
-  return body.radius < SmallRadius * drawing.samples;
+  return body.radius < CelestialBody::SmallRadius * drawing.samples;
 }
 
 double BodyDrawer::NearestDepth(const CustomDrawing& drawing) {
+  if (drawing.object.covered) {
+    return std::numeric_limits<double>::infinity();
+  }
   const auto body = this->Body_.lock();
   const Eigen::Affine3d& X = drawing.object.X_VO;
   const double distance = X.translation().norm() - body->Bounds().radius * LargestStretch(X);
@@ -194,9 +198,8 @@ void BodyDrawer::DrawSurface(const CustomDrawing& drawing, const BodyView& view,
   Reflectance reflectance = material.reflectance.value_or(Reflectance());
   SurfaceShaders::Features features = 0;
   if (angles) {
-    features = SurfaceShaders::Angles |
-               (lit ? SurfaceShaders::ShadowFeatures(drawing.view) : SurfaceShaders::Features(0));
-    features = SurfaceShaders::WithoutMaps(features);
+    features =
+        SurfaceShaders::WithoutMaps(SurfaceShaders::AngleFeatures(drawing.list, drawing.view, lit));
   } else {
     if (lit) {
       features |= SurfaceShaders::LightFeatures(drawing.list, drawing.view);
@@ -346,14 +349,14 @@ void BodyDrawer::DrawAir(const CustomDrawing& drawing, const BodyView& view) {
 void BodyDrawer::DrawColor(const CustomDrawing& drawing) {
   const auto body = this->Body_.lock();
   const BodyView view(drawing.object.X_VO, body->Shape().radii, drawing.view);
-  if (view.seen && !IsSmall(view, drawing)) {
+  if (view.seen && !drawing.object.covered && !IsSmall(view, drawing)) {
     this->DrawSurface(drawing, view, false);
   }
 }
 
 void BodyDrawer::DrawLabels(const CustomDrawing& drawing) {
-  if (drawing.view.clip) {
-    return; // a shadow map
+  if (drawing.view.clip || drawing.object.covered) {
+    return; // a shadow map, or its ground has the label
   }
   const auto body = this->Body_.lock();
   const BodyView view(drawing.object.X_VO, body->Shape().radii, drawing.view);
@@ -372,6 +375,9 @@ void BodyDrawer::DrawLabels(const CustomDrawing& drawing) {
 }
 
 bool BodyDrawer::DrawAngles(const CustomDrawing& drawing) {
+  if (drawing.object.covered) {
+    return true; // those of its ground
+  }
   const auto body = this->Body_.lock();
   const BodyView view(drawing.object.X_VO, body->Shape().radii, drawing.view);
   if (body->Shape().sun || (view.seen && IsSmall(view, drawing))) {
@@ -394,7 +400,7 @@ void BodyDrawer::DrawTranslucent(const CustomDrawing& drawing, const RenderTarge
   state->vtkglDepthMask(GL_FALSE);
   state->vtkglEnable(GL_BLEND);
   BindTextureUnit(drawing.window, OpaqueDepthUnit, GL_TEXTURE_2D, target.Depth());
-  if (view.seen && IsSmall(view, drawing)) {
+  if (view.seen && !drawing.object.covered && IsSmall(view, drawing)) {
     state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
     this->DrawSurface(drawing, view, true);
   }

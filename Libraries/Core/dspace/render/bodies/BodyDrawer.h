@@ -18,13 +18,11 @@ class CustomDrawers;
 // From now on the context with these drawers draws bodies. Any number of calls.
 void RegisterBodyDrawer(CustomDrawers& drawers);
 
-// Crosses each pixel's ray with the ellipsoid. A disc of less than SmallRadius is drawn after what
-// is opaque and the stars: each pixel gets the mean of the light in it. Shadow maps have no bodies:
-// what they hide of the Sun is SurfaceShaders::Eclipses.
+// Crosses each pixel's ray with the ellipsoid. A disc of less than CelestialBody::SmallRadius is
+// drawn after what is opaque and the stars: each pixel gets the mean of the light in it. Shadow
+// maps have no bodies: what they hide of the Sun is SurfaceShaders::Eclipses.
 class BodyDrawer : public CustomDrawer {
 public:
-  static constexpr double SmallRadius = 12.0; // [pixels]
-
   explicit BodyDrawer(std::shared_ptr<const CelestialBody> body) : Body_(std::move(body)) {}
   BodyDrawer(const BodyDrawer&) = delete;
   BodyDrawer& operator=(const BodyDrawer&) = delete;

@@ -36,6 +36,10 @@ struct BodyShape {
   bool eclipses = true;        // it hides the Sun from other things
   std::vector<RingBand> rings; // from the inside out
   std::optional<Atmosphere> atmosphere;
+  // The object of a terrain, which is drawn in place of the ellipsoid while both have the same
+  // frame and offset and the disc is not small (CelestialBody::SmallRadius); 0: none. It has the
+  // body's brightness, and its photometric model unless it has one of its own.
+  std::uint32_t ground = 0;
 };
 
 // Colour, texture, photometric model and emissive light are those of the object's material: by
@@ -44,6 +48,9 @@ struct BodyShape {
 // irradiance.
 class CelestialBody : public CustomGeometry {
 public:
+  // Of the apparent disc [pixels]: below it the light of the disc is shared out.
+  static constexpr double SmallRadius = 12.0;
+
   // Throws Error(InvalidArgument) naming `object` and the value.
   CelestialBody(const std::string& object, BodyShape shape);
 

@@ -11,6 +11,8 @@
 namespace dspace::session {
 namespace {
 
+constexpr double MostRadiusDifference = 0.02; // of a body and its ground
+
 Atmosphere ToAtmosphere(const v1::BodyAtmosphere& from) {
   Atmosphere air;
   const auto take = [](bool has, double value, double& to) { to = has ? value : to; };
@@ -94,10 +96,42 @@ double BrightnessFor(double albedo, const MaterialOverride& material, const std:
   return NormalAlbedo(albedo, reflectance.model) / mean;
 }
 
-BodyShape ShapeOf(const v1::CreateBody& command, const KnownBody* known, const std::string& label) {
+// Of a terrain's CRS: the radii along X, Y and Z [m].
+Eigen::Vector3d GroundRadii(const Context& context, const v1::CreateBody& command,
+                            const KnownBody* known, const std::string& label) {
+  const TerrainObject* terrain = context.scene->TerrainOf(command.ground());
+  if (!terrain) {
+    Reject(label, "its ground is object " + std::to_string(command.ground()) +
+                      "; accepted: the object of a terrain of scene '" + context.sceneName + "'");
+  }
+  if (!terrain->OnBody()) {
+    Reject(label, "its ground '" + terrain->Name() +
+                      "' lies on a plane; accepted: a terrain that was opened on its body");
+  }
+  const auto axes = terrain->Surface().GetCrs().GetAxes();
+  const Eigen::Vector3d radii(axes.semiMajor, axes.semiMajor, axes.semiMinor);
+  const Eigen::Vector3d own = command.has_radii() ? ToVector(command.radii())
+                              : known             ? known->shape.radii
+                                                  : radii;
+  if (((radii - own).cwiseAbs().array() > MostRadiusDifference * own.array()).any()) {
+    Reject(label, "its ground '" + terrain->Name() + "' is of a body with a radius of " +
+                      std::to_string(radii.x()) + " m, the body's is " + std::to_string(own.x()) +
+                      " m; accepted: within 2 %");
+  }
+  return radii;
+}
+
+BodyShape ShapeOf(const Context& context, const v1::CreateBody& command, const KnownBody* known,
+                  const std::string& label) {
   BodyShape shape = known ? known->shape : BodyShape();
+  if (command.ground() != 0) {
+    shape.radii = GroundRadii(context, command, known, label);
+    shape.ground = command.ground();
+  }
   if (command.has_radii()) {
     shape.radii = ToVector(command.radii());
+  } else if (command.ground() != 0) {
+    // They are those of the ground.
   } else if (!known) {
     Reject(label, "neither body nor radii are given; accepted: one of them, or both");
   }
@@ -158,7 +192,7 @@ void CreateBody(const Context& context, v1::CreateBody& command) {
     settings.mutable_material()->mutable_reflectance()->set_model(
         static_cast<v1::Reflectance::Model>(known->model));
   }
-  BodyShape shape = ShapeOf(command, known, label);
+  BodyShape shape = ShapeOf(context, command, known, label);
   const MaterialOverride material =
       ApplyMaterial(*settings.mutable_material(), {}, context.state, label);
   const bool textured = material.texture && *material.texture;

@@ -360,7 +360,7 @@ void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
   SurfaceShaders::Features features = 0;
   if (this->IsLit(drawing)) {
     features |= SurfaceShaders::LightFeatures(drawing.list, drawing.view);
-    const Reflectance reflectance = over.reflectance.value_or(material.reflectance);
+    const Reflectance reflectance = ReflectanceOf(drawing.object, material);
     features |= SurfaceShaders::ReflectanceFeature(reflectance);
     if (reflectance.model == Reflectance::Model::MetallicRoughness &&
         (over.metallic.value_or(material.metallic) > 0.0 ||
@@ -384,9 +384,8 @@ void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
 }
 
 bool ClipmapDrawer::DrawAngles(const CustomDrawing& drawing) {
-  SurfaceShaders::Features features = SurfaceShaders::Angles;
-  features |= this->IsLit(drawing) ? SurfaceShaders::ShadowFeatures(drawing.view) : 0u;
-  this->Draw(drawing, features);
+  this->Draw(drawing,
+             SurfaceShaders::AngleFeatures(drawing.list, drawing.view, this->IsLit(drawing)));
   return true;
 }
 
@@ -474,7 +473,8 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
   const bool tracks = colors && this->ShowsTracks(); // what mixes colours costs time elsewhere
   const bool layers = colors && this->Layers_.Shown();
   const bool normals = (features & SurfaceShaders::Lit) != 0 && this->Normals_.Shown();
-  const bool mixed = colors && (poleTexture || tracks || layers || !style.Empty());
+  const bool scaled = colors && BrightnessOf(drawing.object) != 1.0;
+  const bool mixed = colors && (poleTexture || tracks || layers || scaled || !style.Empty());
   ShaderPages pages;
   pages.vertex = ClipmapVertexShader(chart.placement.GetKind());
   pages.defines = ClipmapUniforms::Defines(chart.placement, mixed ? &style : nullptr);
@@ -486,6 +486,9 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
   }
   if (tracks) {
     pages.defines += "#define DSPACE_TRACKS\n";
+  }
+  if (scaled) {
+    pages.defines += "#define DSPACE_BRIGHTNESS\n";
   }
   if (layers) {
     pages.defines += this->Layers_.Defines();
@@ -535,7 +538,7 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
   if (labels) {
     program->SetUniformi("objectLabel", int(drawing.object.object->id));
   } else {
-    uniforms.SetLook(*drawing.object.object, features);
+    uniforms.SetLook(drawing.object, features);
   }
   if (mixed) {
     uniforms.SetStyle(drawing);

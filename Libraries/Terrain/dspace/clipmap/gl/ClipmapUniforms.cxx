@@ -9,6 +9,7 @@
 
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
+#include <dspace/scene/bodies/CelestialBody.h>
 
 namespace dspace {
 namespace {
@@ -87,10 +88,22 @@ std::string ClipmapUniforms::Defines(const PostPlacement& placement, const Clipm
   return defines;
 }
 
-void ClipmapUniforms::SetLook(const GraphicsObject& object,
-                              SurfaceShaders::Features features) const {
+Reflectance ReflectanceOf(const DrawCustom& drawn, const Material& material) {
+  const auto& own = drawn.object->material.reflectance;
+  if (own || !drawn.body) {
+    return own.value_or(material.reflectance);
+  }
+  return drawn.body->material.reflectance.value_or(material.reflectance);
+}
+
+double BrightnessOf(const DrawCustom& drawn) {
+  return drawn.body ? static_cast<const CelestialBody&>(*drawn.body->custom).Shape().brightness
+                    : 1.0;
+}
+
+void ClipmapUniforms::SetLook(const DrawCustom& drawn, SurfaceShaders::Features features) const {
   const Material& material = *this->Terrain_.Options().material;
-  const MaterialOverride& over = object.material;
+  const MaterialOverride& over = drawn.object->material;
   const std::array<double, 3> color = over.color.value_or(material.color);
   const float linear[4] = {LinearFromSrgb(color[0]), LinearFromSrgb(color[1]),
                            LinearFromSrgb(color[2]), 1.0f};
@@ -99,7 +112,10 @@ void ClipmapUniforms::SetLook(const GraphicsObject& object,
                             float(over.roughness.value_or(material.roughness)),
                             this->Camera_.mirrored};
   this->Program_->SetUniform3f("objectSurface", surface);
-  const Reflectance reflectance = over.reflectance.value_or(material.reflectance);
+  if (this->Program_->IsUniformUsed("groundBrightness")) {
+    this->Program_->SetUniformf("groundBrightness", float(BrightnessOf(drawn)));
+  }
+  const Reflectance reflectance = ReflectanceOf(drawn, material);
   if (features & SurfaceShaders::ReflectanceFeature(reflectance)) {
     SurfaceShaders::SetReflectance(this->Program_, reflectance);
   }

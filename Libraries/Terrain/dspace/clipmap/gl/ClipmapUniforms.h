@@ -27,6 +27,11 @@ struct ClipmapCamera {
 double CellSizeNear(const PostPlacement& placement, const PostLattice& lattice,
                     const Eigen::Vector2d& post);
 
+// How the ground reflects light: by its object, the body whose ground it is, or the terrain's own.
+Reflectance ReflectanceOf(const DrawCustom& drawn, const Material& material);
+// Factor on its colours in linear light: of the body whose ground it is, else 1.
+double BrightnessOf(const DrawCustom& drawn);
+
 class ClipmapUniforms {
 public:
   // `style`: what of the terrain's style is drawn.
@@ -40,8 +45,7 @@ public:
   // Lines of definitions that the placement and the style ask of the shaders.
   static std::string Defines(const PostPlacement& placement, const ClipmapStyle* style);
 
-  void SetLook(const GraphicsObject& object,
-               SurfaceShaders::Features features) const; // not for labels
+  void SetLook(const DrawCustom& drawn, SurfaceShaders::Features features) const; // not for labels
   void SetStyle(const CustomDrawing& drawing) const;
   void SetPlacement() const; // the same for all levels
   void SetLevel(int level) const;
