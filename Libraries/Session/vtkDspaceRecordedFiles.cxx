@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include <dspace/HomeProcess.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/recording/RecordedFiles.h>
 
@@ -10,13 +11,18 @@
 vtkStandardNewMacro(vtkDspaceRecordedFiles);
 
 struct vtkDspaceRecordedFiles::Internals {
+  dspace::HomeProcess home;
   std::optional<dspace::session::RecordingReader> reader;
   std::optional<dspace::session::RecordedFiles> files; // goes before the reader
 };
 
 vtkDspaceRecordedFiles::vtkDspaceRecordedFiles() : Impl(std::make_unique<Internals>()) {}
 
-vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() = default;
+vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+  }
+}
 
 std::string vtkDspaceRecordedFiles::Open(const std::string& recording, bool check) {
   this->Close();

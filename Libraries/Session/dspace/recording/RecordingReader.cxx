@@ -9,11 +9,11 @@
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-#include <google/protobuf/util/delimited_message_util.h>
 #include <zlib.h>
 
 #include <dspace/Error.h>
 #include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/MessageElements.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
 #include <dspace/recording/RecordingWriter.h>
@@ -65,6 +65,15 @@ RecordingContent PartOf(const Statement& row) {
   part.size = row.Integer(3);
   part.data = row.Bytes(4);
   return part;
+}
+
+// Throws Error(Resource) before a message is parsed that would be far larger than its bytes.
+void RequireElements(const RecordingDatabase& database, const std::string& bytes,
+                     const std::string& what) {
+  const std::string why = TooManyElements(bytes, *v1::Command::descriptor());
+  if (!why.empty()) {
+    throw Error(Error::Kind::Resource, "recording '" + database.Path() + "'", what + ": " + why);
+  }
 }
 
 [[noreturn]] void Missing(const RecordingDatabase& database, std::uint64_t first,
@@ -224,6 +233,7 @@ void RecordingReader::Read(std::uint64_t first, std::uint64_t last,
                            const std::function<bool(RecordedCommand&&)>& take) {
   this->ReadRows(first, last, [&](RecordingRow&& row) {
     RecordedCommand command{row.seq, row.time_s, row.wall_s, {}};
+    RequireElements(*this->Database_, row.payload, "command " + std::to_string(row.seq));
     if (!command.command.ParseFromString(row.payload)) {
       this->Database_->Damaged("command " + std::to_string(row.seq) + " is not a Command message");
     }
@@ -265,9 +275,15 @@ RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
   google::protobuf::io::ArrayInputStream bytes(row.payload.data(), int(row.payload.size()));
   google::protobuf::io::CodedInputStream in(&bytes);
   bool end = false;
-  for (;;) {
+  for (std::string each; !end;) {
+    std::uint32_t size = 0;
+    end = in.CurrentPosition() == int(row.payload.size());
+    if (end || !in.ReadVarint32(&size) || !in.ReadString(&each, int(size))) {
+      break;
+    }
+    RequireElements(*this->Database_, each, "snapshot " + std::to_string(row.seq));
     v1::Command command;
-    if (!google::protobuf::util::ParseDelimitedFromCodedStream(&command, &in, &end)) {
+    if (!command.ParseFromString(each)) {
       break;
     }
     snapshot.commands.push_back(std::move(command));
@@ -308,7 +324,9 @@ RecordingReader::Steps(const std::optional<std::string>& scene) {
   while (found.Step()) {
     const auto seq = std::uint64_t(found.Integer(0));
     if (scene) {
-      if (!command.ParseFromString(found.Bytes(2))) {
+      const std::string bytes = found.Bytes(2);
+      RequireElements(*this->Database_, bytes, "command " + std::to_string(seq));
+      if (!command.ParseFromString(bytes)) {
         this->Database_->Damaged("command " + std::to_string(seq) + " is not a Command message");
       }
       if (SceneName(command) != *scene) {

@@ -12,6 +12,7 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
+#include <dspace/raster/BlockBudget.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/SelfContainedDrivers.h>
@@ -201,6 +202,7 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
   }
   if (dataset) {
     CheckOpened(*dataset, path, opening);
+    RequireBlockBytes(*dataset, path);
   }
   return dataset;
 }
@@ -277,8 +279,12 @@ DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char
   if (FilesGuard::IsActive()) {
     return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
   }
-  return DatasetPointer(
+  DatasetPointer dataset(
       GDALDataset::Open(path.c_str(), FlagsOf(kind) | GDAL_OF_VERBOSE_ERROR, drivers));
+  if (dataset) {
+    RequireBlockBytes(*dataset, path);
+  }
+  return dataset;
 }
 
 DatasetPointer OpenOwnTiff(const std::string& path) {

@@ -42,6 +42,9 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   (overviews, masks, sources), pass the same checks. One that fails them makes the whole opening
 //   fail.
 //
+// Throws Error(Resource) that names the file where a block of the raster is larger than
+// Budget::BlockBytes (Budgets.h): nothing of it is read.
+//
 // Throws Error under a guard: what the guard throws; NotFound; InvalidArgument (a name that is
 // rejected, see above); Unsupported (none of the accepted formats). Each names the file.
 DatasetPointer OpenDataset(const std::string& path, DatasetKind kind,

@@ -4,7 +4,7 @@ import os
 import re
 import sys
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, set_limits
 
 PICTURE = re.compile(r"\d{6,}\.png")
 ABOUT = (
@@ -23,6 +23,8 @@ def add_arguments(parser):
     parser.add_argument("--every", type=float, metavar="DT", help="seconds of simulation time between pictures; not "
                                                                     "with --at")
     parser.add_argument("--reverse", action="store_true", help="draw from the last step to the first; not with --at")
+    parser.add_argument("--limit", action="append", metavar="NAME=VALUE", default=[],
+                        help="a limit of memory or time, see dspace.limits; may be given several times")
     parser.set_defaults(run=run)
 
 
@@ -44,6 +46,7 @@ def run(options):
     from dspace.playback.playback import Playback
 
     check(options)
+    set_limits(options.limit)
     vtk.vtkDspaceSession().ConfineProcess()  # it may open only the recording's files
     with Playback(options.file) as playback:
         if options.at is not None:
