@@ -27,7 +27,7 @@ IMAGES = (".png", ".jpg", ".svg")
 # Rooms of the package by chapter of the reference.
 ROOMS = {"Sessions": ("clients", "links"), "Scenes": ("scene", "objects", "frames", "cameras"),
          "Terrain and measurements": ("terrain", "measure", "reports"), "Sky": ("sky", "stars"), "Telemetry": ("telemetry",),
-         "Recordings and movies": ("recording", "playback", "movies"), "Errors": ("errors",)}
+         "Recordings and movies": ("recording", "playback", "movies"), "Errors and limits": ("errors", "limits")}
 # Modules that are documented as a whole.
 MODULES = ("dspace.rover", "dspace.stars", "dspace.trajectories")
 

@@ -6,6 +6,8 @@
 #include "vtkNew.h"
 #include "vtkObjectFactory.h"
 
+#include <dspace/Error.h>
+#include <dspace/HomeProcess.h>
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/EglContext.h>
 #include <dspace/render/GpuStore.h>
@@ -13,7 +15,23 @@
 
 vtkStandardNewMacro(vtkDspaceRenderContext);
 
+namespace {
+
+// OpenGL's libraries keep threads: a child that was forked from a process that draws cannot draw.
+void RequireUnforked() {
+  static const dspace::HomeProcess first;
+  if (!first.IsHere()) {
+    throw dspace::Error(dspace::Error::Kind::Unsupported, "render context",
+                        "this process was forked from one that draws, so that it cannot draw; "
+                        "accepted: a process that is started anew (in Python "
+                        "multiprocessing.get_context('spawn'))");
+  }
+}
+
+} // namespace
+
 struct vtkDspaceRenderContext::Internals {
+  dspace::HomeProcess home;
   vtkNew<vtkDspaceHubWindow> hub;
   dspace::RenderStatistics statistics;
   dspace::GpuStore store{statistics};
@@ -24,6 +42,10 @@ struct vtkDspaceRenderContext::Internals {
 vtkDspaceRenderContext::vtkDspaceRenderContext() : Impl(std::make_unique<Internals>()) {}
 
 vtkDspaceRenderContext::~vtkDspaceRenderContext() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+    return;
+  }
   if (this->Impl->hub->GetContext()) {
     this->Impl->hub->MakeCurrent();
     this->Impl->store.Release();
@@ -37,6 +59,7 @@ void vtkDspaceRenderContext::PrintSelf(ostream& os, vtkIndent indent) {
 }
 
 void vtkDspaceRenderContext::Initialize(std::unique_ptr<dspace::GraphicsContext> context) {
+  RequireUnforked();
   if (!this->Impl->hub->GetContext()) {
     this->Impl->hub->SetContext(context ? std::move(context) : dspace::MakeEglContext());
   }

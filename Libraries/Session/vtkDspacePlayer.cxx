@@ -3,6 +3,7 @@
 #include <optional>
 
 #include <dspace/Error.h>
+#include <dspace/HomeProcess.h>
 #include <dspace/link/watching/ViewerViews.h>
 #include <dspace/link/watching/ViewportCopies.h>
 #include <dspace/messages/ErrorReply.h>
@@ -15,6 +16,7 @@
 vtkStandardNewMacro(vtkDspacePlayer);
 
 struct vtkDspacePlayer::Internals {
+  dspace::HomeProcess home;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
   dspace::session::ViewerViews views;
   dspace::session::ViewportCopies copies;
@@ -55,7 +57,11 @@ struct vtkDspacePlayer::Internals {
 
 vtkDspacePlayer::vtkDspacePlayer() : Impl(std::make_unique<Internals>()) {}
 
-vtkDspacePlayer::~vtkDspacePlayer() = default;
+vtkDspacePlayer::~vtkDspacePlayer() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+  }
+}
 
 void vtkDspacePlayer::PrintSelf(ostream& os, vtkIndent indent) {
   this->Superclass::PrintSelf(os, indent);

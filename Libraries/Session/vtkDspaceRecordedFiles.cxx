@@ -3,6 +3,8 @@
 #include <optional>
 
 #include "RecordingThread.h"
+
+#include <dspace/HomeProcess.h>
 #include <dspace/recording/RecordedFiles.h>
 
 #include "vtkObjectFactory.h"
@@ -10,6 +12,7 @@
 vtkStandardNewMacro(vtkDspaceRecordedFiles);
 
 struct vtkDspaceRecordedFiles::Internals {
+  dspace::HomeProcess home;
   std::optional<dspace::session::RecordingReader> reader;
   std::optional<dspace::session::RecordedFiles> files; // goes before the reader
   dspace::session::RecordingThread thread;             // goes first
@@ -17,7 +20,11 @@ struct vtkDspaceRecordedFiles::Internals {
 
 vtkDspaceRecordedFiles::vtkDspaceRecordedFiles() : Impl(std::make_unique<Internals>()) {}
 
-vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() = default;
+vtkDspaceRecordedFiles::~vtkDspaceRecordedFiles() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+  }
+}
 
 void vtkDspaceRecordedFiles::BeginOpen(const std::string& recording, bool check,
                                        unsigned long long unpackLimit) {

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include <dspace/FilesRead.h>
+#include <dspace/HomeProcess.h>
+#include <dspace/import/worker/ImportWorker.h>
 #include <dspace/ledger/Ledger.h>
 #include <dspace/link/server/Server.h>
 #include <dspace/messages/CommandLimits.h>
@@ -34,6 +36,7 @@ void RejectDrawn(const dspace::v1::Command& command) {
 } // namespace
 
 struct vtkDspaceServer::Internals {
+  dspace::HomeProcess home;
   dspace::session::ServerOptions options;
   std::vector<std::string> roots;
   long long maximumFrames = 1000000;
@@ -123,6 +126,10 @@ vtkDspaceServer::vtkDspaceServer() : Impl(new Internals) {
 }
 
 vtkDspaceServer::~vtkDspaceServer() { // others may keep the session
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+    return;
+  }
   this->Impl->session->GetInterpreter().RemoveListener(this->Impl->listener);
 }
 
@@ -176,6 +183,7 @@ std::string vtkDspaceServer::Start() {
   const dspace::v1::Reply reply = dspace::session::Catch([this] {
     this->Impl->confinement = std::make_shared<dspace::session::Confinement>(this->Impl->roots);
     this->Impl->drivers = std::make_unique<dspace::ConfinedDrivers>();
+    dspace::ImportWorker::OfProcess().Start(); // before the threads of gRPC
     this->Impl->server = std::make_unique<dspace::session::Server>(this->Impl->options);
     return dspace::v1::Reply();
   });

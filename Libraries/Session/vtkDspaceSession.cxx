@@ -8,12 +8,16 @@
 
 #include <dlfcn.h>
 
+#include <dspace/Budgets.h>
+#include <dspace/HomeProcess.h>
 #include <dspace/Utf8.h>
 #include <dspace/commands/viewports/DrawerPlugIn.h>
 #include <dspace/commands/viewports/MeasuringPictures.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
+#include <dspace/import/worker/ModelImport.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/MeshMessages.h>
+#include <dspace/messages/MessageElements.h>
 #include <dspace/messages/TextFields.h>
 #include <dspace/raster/ConfinedDrivers.h>
 #include <dspace/recording/RecordingWriter.h>
@@ -58,6 +62,7 @@ vtkSmartPointer<vtkDataArray> ToArray(const char* name, const std::vector<T>& va
 } // namespace
 
 struct vtkDspaceSession::Internals {
+  dspace::HomeProcess home;
   dspace::VtkMessages messages; // what VTK reports during any command
   // In this order: viewports are destroyed before the scenes that they show.
   dspace::session::Interpreter interpreter;
@@ -168,6 +173,7 @@ struct vtkDspaceSession::Internals {
 };
 
 vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
+  dspace::EndForkedChildrenAtOnce();
   dspace::session::Registry& commands = this->Impl->interpreter.Commands();
   this->Impl->viewports.AddTo(commands);
   this->Impl->interpreter.GetState().pictures =
@@ -191,7 +197,11 @@ vtkDspaceSession::vtkDspaceSession() : Impl(new Internals) {
       });
 }
 
-vtkDspaceSession::~vtkDspaceSession() = default;
+vtkDspaceSession::~vtkDspaceSession() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+  }
+}
 
 void vtkDspaceSession::OfferProp(vtkProp3D* prop) {
   this->Impl->offered = prop;
@@ -240,6 +250,11 @@ std::string vtkDspaceSession::LoadPlugIn(const std::string& path) {
 
 std::string vtkDspaceSession::Execute(const std::string& bytes) {
   dspace::v1::Reply reply;
+  if (!this->Impl->home.IsHere()) {
+    return dspace::session::ErrorReply(dspace::v1::Error::UNSUPPORTED, "session",
+                                       "session: it " + this->Impl->home.Message())
+        .SerializeAsString();
+  }
   dspace::v1::Command& command = this->Impl->command;
   if (!command.ParseFromString(bytes)) {
     command.Clear();
@@ -420,6 +435,13 @@ std::string vtkDspaceSession::Replay(const std::string& bytes, vtkDspaceRecorded
     return reply.SerializeAsString();
   }
   const dspace::FilesGuard guard(look);
+  const std::string tooMany =
+      dspace::session::TooManyElements(bytes, *dspace::v1::Command::descriptor());
+  if (!tooMany.empty()) {
+    return dspace::session::ErrorReply(dspace::v1::Error::RESOURCE, "command",
+                                       "command: " + tooMany)
+        .SerializeAsString();
+  }
   dspace::v1::Command command;
   const auto* entry = command.ParseFromString(bytes)
                           ? this->Impl->interpreter.Commands().Find(command.command_case())
@@ -446,6 +468,27 @@ void vtkDspaceSession::ConfineProcess(bool withoutNamesOnly) {
   const dspace::ConfinedDrivers confined(withoutNamesOnly);
 }
 
+std::string vtkDspaceSession::GetLimits() {
+  std::string lines;
+  for (const dspace::BudgetInfo& info : dspace::Budgets()) {
+    lines += info.name + (" " + std::to_string(dspace::BudgetOf(info.budget))) + "\n";
+  }
+  return lines;
+}
+
+std::string vtkDspaceSession::SetLimit(const std::string& name, unsigned long long value) {
+  try {
+    dspace::SetBudget(name, value);
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return {};
+}
+
+void vtkDspaceSession::SetImportsApart(bool apart) {
+  dspace::SetImportsApart(apart);
+}
+
 std::string vtkDspaceSession::AddFailed(const dspace::v1::Command& accepted,
                                         const std::string& why) {
   this->Impl->ledger.AddFailed(accepted, why);
@@ -459,6 +502,9 @@ const dspace::session::Ledger& vtkDspaceSession::GetLedger() {
 }
 
 void vtkDspaceSession::EndBackgroundWork() {
+  if (!this->Impl->home.IsHere()) {
+    return; // it is the parent's
+  }
   for (auto& [name, scene] : this->Impl->interpreter.GetState().scenes) {
     for (auto& [terrainName, terrain] : scene.terrains) {
       terrain->EndBackgroundWork();

@@ -112,6 +112,14 @@ public:
   /// whole process for the rest of its life, see <dspace/raster/ConfinedDrivers.h>.
   void ConfineProcess(bool withoutNamesOnly = false);
 
+  /// Limits of this process, see <dspace/Budgets.h>. GetLimits() has a line "NAME VALUE" for each.
+  /// SetLimit() returns the error, or an empty string.
+  static std::string GetLimits();
+  static std::string SetLimit(const std::string& name, unsigned long long value);
+  /// Whether models of all formats are read in processes of their own, see
+  /// <dspace/import/worker/ModelImport.h>.
+  static void SetImportsApart(bool apart);
+
 #ifndef __VTK_WRAP__
   dspace::session::Interpreter& GetInterpreter();
   /// Adds a user-defined drawer (<dspace/commands/viewports/DrawerPlugIn.h>), which the command

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include <dspace/HomeProcess.h>
 #include <dspace/link/watching/LatestSteps.h>
 #include <dspace/link/watching/LinkBanner.h>
 #include <dspace/link/watching/ViewerViews.h>
@@ -31,6 +32,7 @@ constexpr double PickTimeout = 1.0;     // [s]: a click is not to stop the viewe
 } // namespace
 
 struct vtkDspaceWatcher::Internals {
+  dspace::HomeProcess home;
   dspace::session::WatcherOptions options;
   std::unique_ptr<dspace::session::Watcher> watcher;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
@@ -265,7 +267,11 @@ vtkDspaceWatcher::vtkDspaceWatcher() : Impl(new Internals) {
   this->Impl->banner.Follow(this->Impl->Interpreter());
   this->Impl->copies.Follow(this->Impl->Interpreter());
 }
-vtkDspaceWatcher::~vtkDspaceWatcher() = default;
+vtkDspaceWatcher::~vtkDspaceWatcher() {
+  if (!this->Impl->home.IsHere()) {
+    (void)this->Impl.release(); // HomeProcess.h
+  }
+}
 
 void vtkDspaceWatcher::SetCertificates(const std::string& certificate, const std::string& key,
                                        const std::string& authority) {

@@ -66,10 +66,10 @@ def __getattr__(name):
     # Modules are loaded on demand, so that plain Python (dspace.rover) works without the compiled part.
     if name in _HOMES:
         return getattr(importlib.import_module(f"{__name__}.{_HOMES[name]}"), name)
-    if name in ("errors", "proto", "rover", "stars", "trajectories", "vtk"):
+    if name in ("errors", "limits", "proto", "rover", "stars", "trajectories", "vtk"):
         return importlib.import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__():
-    return __all__ + ["errors", "proto", "rover", "vtk"]
+    return __all__ + ["errors", "limits", "proto", "rover", "vtk"]

@@ -7,6 +7,8 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <dspace/Budgets.h>
+
 #include "RawDrive.h"
 #include "Sanitized.h"
 
@@ -84,6 +86,29 @@ TEST_F(LinkLimits, WhatWaitsIsCountedAsItLiesInMemory) {
 
 // Both sides stay a few steps ahead of one another, but only while the other one goes on.
 // What the server's queue does not take waits in the client.
+TEST_F(LinkLimits, ACommandOfTooManyElementsIsAnErrorOfItsOwn) {
+  SetBudget("message_elements", 1000);
+  this->StartServer();
+  RemoteClient client(this->ClientOptions());
+  Accept(client.Execute(MakeScene()));
+  v1::Command table; // two bytes for each row
+  for (int i = 0; i < 2000; ++i) {
+    table.mutable_set_text_table()->add_row();
+  }
+  const v1::Reply reply = client.Execute(table);
+  EXPECT_EQ(reply.error().kind(), v1::Error::RESOURCE);
+  EXPECT_NE(reply.error().message().find("command 2: its "), std::string::npos);
+  EXPECT_NE(reply.error().message().find("the limit message_elements is 1000"), std::string::npos)
+      << reply.error().message();
+  v1::Command next;
+  next.mutable_create_frame()->set_name("after");
+  Accept(client.Execute(next));
+  SetBudget("message_elements", 10000);
+  EXPECT_EQ(client.Execute(table).error().message().find("message_elements"), std::string::npos);
+  const BudgetInfo& info = Budgets()[static_cast<std::size_t>(Budget::MessageElements)];
+  SetBudget(info.name, info.standard);
+}
+
 TEST_F(LinkLimits, AServerThatStallsIsSentAWindowful) {
   for (const std::size_t queue : {std::size_t(256) << 20, std::size_t(1) << 20}) {
     this->Options.queuedBytes = queue;

@@ -9,11 +9,11 @@
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-#include <google/protobuf/util/delimited_message_util.h>
 #include <zlib.h>
 
 #include <dspace/Error.h>
 #include <dspace/messages/CommandLimits.h>
+#include <dspace/messages/MessageElements.h>
 #include <dspace/messages/WireText.h>
 #include <dspace/recording/RecordingDatabase.h>
 #include <dspace/recording/RecordingFile.h>
@@ -76,6 +76,15 @@ bool ParseCommand(const std::string& payload, v1::Command& command, bool& foreig
   const std::optional<std::string> readable = WithTextUtf8(payload, *v1::Command::descriptor());
   foreign = readable.has_value();
   return command.ParseFromString(readable ? *readable : payload);
+}
+
+// Throws Error(Resource) before a message is parsed that would be far larger than its bytes.
+void RequireElements(const RecordingDatabase& database, const std::string& bytes,
+                     const std::string& what) {
+  const std::string why = TooManyElements(bytes, *v1::Command::descriptor());
+  if (!why.empty()) {
+    throw Error(Error::Kind::Resource, "recording '" + database.Path() + "'", what + ": " + why);
+  }
 }
 
 [[noreturn]] void Missing(const RecordingDatabase& database, std::uint64_t first,
@@ -275,6 +284,7 @@ void RecordingReader::Read(std::uint64_t first, std::uint64_t last,
                            const std::function<bool(RecordedCommand&&)>& take) {
   this->ReadRows(first, last, [&](RecordingRow&& row) {
     RecordedCommand command{row.seq, row.time_s, row.wall_s, {}, false};
+    RequireElements(*this->Database_, row.payload, "command " + std::to_string(row.seq));
     if (!ParseCommand(row.payload, command.command, command.foreignText)) {
       this->Database_->Damaged("command " + std::to_string(row.seq) + " is not a Command message");
     }
@@ -320,9 +330,15 @@ RecordedSnapshot RecordingReader::SnapshotAt(std::uint64_t seq) {
   google::protobuf::io::ArrayInputStream bytes(row.payload.data(), int(row.payload.size()));
   google::protobuf::io::CodedInputStream in(&bytes);
   bool end = false;
-  for (;;) {
+  for (std::string each; !end;) {
+    std::uint32_t size = 0;
+    end = in.CurrentPosition() == int(row.payload.size());
+    if (end || !in.ReadVarint32(&size) || !in.ReadString(&each, int(size))) {
+      break;
+    }
+    RequireElements(*this->Database_, each, "snapshot " + std::to_string(row.seq));
     v1::Command command;
-    if (!google::protobuf::util::ParseDelimitedFromCodedStream(&command, &in, &end)) {
+    if (!command.ParseFromString(each)) {
       break;
     }
     snapshot.commands.push_back(std::move(command));
@@ -364,7 +380,9 @@ RecordingReader::Steps(const std::optional<std::string>& scene) {
     const auto seq = std::uint64_t(found.Integer(0));
     if (scene) {
       bool foreign = false;
-      if (!ParseCommand(found.Bytes(2), command, foreign)) {
+      const std::string bytes = found.Bytes(2);
+      RequireElements(*this->Database_, bytes, "command " + std::to_string(seq));
+      if (!ParseCommand(bytes, command, foreign)) {
         this->Database_->Damaged("command " + std::to_string(seq) + " is not a Command message");
       }
       if (SceneName(command) != *scene) {

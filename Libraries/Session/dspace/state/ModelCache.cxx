@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include <dspace/import/files/ImageReader.h>
+#include <dspace/import/worker/ModelImport.h>
 #include <dspace/state/ReadBeforehand.h>
 
 namespace dspace::session {
@@ -50,12 +50,12 @@ std::shared_ptr<const Model> ModelCache::LoadModel(const std::string& path,
     ReadBeforehand* before = ReadBeforehand::Current();
     return before && &before->models != this
                ? before->models.LoadModel(path, options)
-               : std::make_shared<const Model>(ReadModel(path, options));
+               : std::make_shared<const Model>(ImportModel(path, options));
   });
 }
 
 std::shared_ptr<const Image> ModelCache::LoadImage(const std::string& path) {
-  return Load(this->Images_, FileKey(path), [&] { return ReadImage(path); });
+  return Load(this->Images_, FileKey(path), [&] { return ImportImage(path); });
 }
 
 std::string AbsolutePath(const std::string& path) {

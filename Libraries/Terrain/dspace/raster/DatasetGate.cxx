@@ -14,6 +14,7 @@
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
+#include <dspace/raster/BlockBudget.h>
 #include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
@@ -258,6 +259,7 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
   }
   if (dataset) {
     CheckOpened(*dataset, path, opening);
+    RequireBlockBytes(*dataset, path);
   }
   return dataset;
 }
@@ -338,6 +340,7 @@ DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char
       GDALDataset::Open(path.c_str(), FlagsOf(kind) | GDAL_OF_VERBOSE_ERROR, drivers));
   if (dataset) {
     CheckPixels(*dataset, path);
+    RequireBlockBytes(*dataset, path);
   }
   return dataset;
 }

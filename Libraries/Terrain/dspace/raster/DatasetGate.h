@@ -44,10 +44,11 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   (overviews, masks, sources), pass the same checks. One that fails them makes the whole opening
 //   fail.
 //
-// Throws Error(Resource) for a raster of more pixels than PixelLimit; under a guard also for a
-// mosaic of too many files. Throws Error under a guard: what the guard throws; NotFound;
-// InvalidArgument (a name that is rejected, see above); Unsupported (none of the accepted formats).
-// Each names the file.
+// Throws Error(Resource) for a raster of more pixels than PixelLimit, or with a block larger than
+// Budget::BlockBytes (Budgets.h), before anything of it is read; under a guard also for a mosaic of
+// too many files. Throws Error under a guard: what the guard throws; NotFound; InvalidArgument (a
+// name that is rejected, see above); Unsupported (none of the accepted formats). Each names the
+// file.
 DatasetPointer OpenDataset(const std::string& path, DatasetKind kind,
                            const char* const* drivers = nullptr);
 

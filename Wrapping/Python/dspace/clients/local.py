@@ -1,4 +1,5 @@
 """The client that executes the commands of a session in this process."""
+import os
 import threading
 import weakref
 
@@ -9,7 +10,7 @@ from dspace._core.wire import encode
 from dspace.clients.listeners import EventQueue, FrameListeners
 from dspace.clients.pipelines import Pipelines
 from dspace.clients.windows import ViewWindows
-from dspace.errors import Closed, WrongThread
+from dspace.errors import Closed, Unsupported, WrongThread
 from dspace.scene.inputs import ViewportInputs
 
 
@@ -19,6 +20,7 @@ class LocalClient:
     def __init__(self, session=None):
         """session: the vtkDspaceSession that it drives; None: a new one."""
         self._thread = threading.get_ident()
+        self.process = os.getpid()
         self.vtk = _vtk.vtkDspaceSession() if session is None else session
         self._background = weakref.finalize(self, self.vtk.EndBackgroundWork)
         self.frame_listeners = FrameListeners()
@@ -39,12 +41,20 @@ class LocalClient:
         """The vtkDspaceSession; raises when it is closed."""
         if self.vtk is None:
             raise Closed("the session is closed; accepted: a new dspace.Session()", "session")
+        self._require_process()
         self._require_thread()
         return self.vtk
 
     def shown(self):
         """What the windows of an application show views of."""
         return self.local()
+
+    def _require_process(self):
+        # A child of a fork has none of the session's threads, and the graphics context is the parent's.
+        if os.getpid() != self.process:
+            raise Unsupported(f"process {self.process} made the session, and this one is its child; accepted: a process "
+                              "that is started anew (multiprocessing.get_context('spawn')) with a session of its own",
+                              "session")
 
     def _require_thread(self):
         # Its graphics context is current in one thread only; drawing in another one would fail or crash.
@@ -93,7 +103,7 @@ class LocalClient:
         return self.events.take()
 
     def close(self):
-        if self.vtk is not None:
+        if self.vtk is not None and os.getpid() == self.process:
             self._require_thread()
             self.windows.end(self.vtk)
         self._background()

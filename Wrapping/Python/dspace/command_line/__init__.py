@@ -49,6 +49,16 @@ def later(module, function="run"):
     return run
 
 
+def set_limits(given):
+    """Sets dspace.limits from options such as "image_pixels=400000000"."""
+    import dspace
+    for text in given:
+        name, _, value = text.partition("=")
+        if not re.fullmatch(r"[0-9]{1,18}", value):
+            raise Failed(f"--limit {text!r}; accepted: NAME=VALUE with a whole number, such as image_pixels=400000000")
+        dspace.limits.set(**{name: int(value)})
+
+
 def lazy(name):
     """A module that is loaded when something of it is used."""
     if name in sys.modules:

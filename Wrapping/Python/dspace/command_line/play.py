@@ -4,7 +4,7 @@ import os
 import re
 import sys
 
-from dspace.command_line import Failed, confinement, tidy_end
+from dspace.command_line import Failed, confinement, set_limits, tidy_end
 from dspace.command_line.log import add_unpack_limit
 
 PICTURE = re.compile(r"\d{6,}\.png")
@@ -28,6 +28,8 @@ def add_arguments(parser):
                         help="allow connections, for a recording whose rasters are on servers")
     confinement.add_argument(parser, "the recording")
     add_unpack_limit(parser)
+    parser.add_argument("--limit", action="append", metavar="NAME=VALUE", default=[],
+                        help="a limit of memory or time, see dspace.limits; may be given several times")
     parser.set_defaults(run=run)
 
 
@@ -61,6 +63,7 @@ def run(options):
     from dspace import vtk  # needs the compiled part
     from dspace.playback.playback import Playback
 
+    set_limits(options.limit)
     confine = vtk.vtkDspaceSession().ConfineProcess  # it may open only the recording's files
     confine() if files_are_restricted else confine(True)
     with tidy_end(), confinement.explaining(options), \

@@ -10,7 +10,7 @@ import stat
 import sys
 import time
 
-from dspace.command_line import Failed, confinement
+from dspace.command_line import Failed, confinement, set_limits
 from dspace.command_line.certificates import make_test_certificates
 
 TO_END = 60.0  # time limit [s] for closing connections after the session has ended
@@ -38,6 +38,8 @@ def add_arguments(parser):
     parser.add_argument("--max-rate", type=float, default=100000.0, metavar="N",
                         help="largest number of commands a second; a faster simulation is slowed down "
                         "(default 100,000)")
+    parser.add_argument("--limit", action="append", metavar="NAME=VALUE", default=[],
+                        help="a limit of memory or time, see dspace.limits; may be given several times")
     parser.add_argument("--fresh-on-connect", action="store_true",
                         help="remove the scenes and viewports of earlier simulations when another one connects "
                         "(one that comes back after a broken connection goes on with its own)")
@@ -101,6 +103,7 @@ def run(options):
     files_are_restricted = confinement.confine(options, lambda: rules_of(options),
                                                  confinement.SAFEST_FORMATS)
     from dspace import vtk
+    set_limits(options.limit)
     server = vtk.vtkDspaceServer()
     if not files_are_restricted:
         server.GetSession().ConfineProcess(True)

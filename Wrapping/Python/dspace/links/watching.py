@@ -28,6 +28,7 @@ class WatchClient(LocalClient):
     def watcher(self):
         if self._watcher is None:
             raise Closed("the watcher is closed; accepted: a new dspace.watch()", "watcher")
+        self._require_process()
         self._require_thread()
         return self._watcher
 

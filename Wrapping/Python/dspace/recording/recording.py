@@ -53,7 +53,8 @@ class Recording:
         return self
 
     def __exit__(self, *exception):
-        self.stop()
+        if os.getpid() == self._client.process:  # a child of a fork leaves the file to its parent
+            self.stop()
 
     @property
     def active(self):

@@ -1,5 +1,6 @@
 #include <dspace/import/files/ImageCodec.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include <dlfcn.h>
@@ -8,6 +9,8 @@
 
 namespace dspace {
 namespace {
+
+std::atomic<bool> IsLoaded = false;
 
 // Beside the library that contains this function.
 std::string CodecPath() {
@@ -30,10 +33,15 @@ const ImageCodec& Load() {
                 "cannot be loaded: " + std::string(reason ? reason : "unknown reason") +
                     "; accepted: the library beside Dspace's others, and OpenImageIO");
   }
+  IsLoaded = true;
   return *get();
 }
 
 } // namespace
+
+bool ImageCodecIsLoaded() {
+  return IsLoaded;
+}
 
 const ImageCodec& LoadImageCodec() {
   static const ImageCodec& codec = Load();

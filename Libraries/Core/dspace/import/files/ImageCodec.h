@@ -39,6 +39,8 @@ struct ImageCodec {
 
 // Loads the library at the first call. Throws Error(Internal) if it is not beside this one.
 const ImageCodec& LoadImageCodec();
+// Whether a call has loaded it.
+bool ImageCodecIsLoaded();
 
 } // namespace dspace
 

@@ -10,8 +10,9 @@
 
 namespace dspace {
 
-// Largest image that is read: 32768 pixels a side and 1 GiB decoded.
+// Largest image that is read: 32768 pixels a side, and Budget::ImagePixels (Budgets.h) in all.
 constexpr int MaximumImageSide = 32768;
+// Largest file of an image that is read, packed.
 constexpr std::size_t MaximumImageBytes = std::size_t(1) << 30;
 
 // Reads a PNG, JPEG, WebP, GIF, BMP, TIFF, PNM or (by its extension) TGA file as 8 bits a channel;

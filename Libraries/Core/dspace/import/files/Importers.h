@@ -17,6 +17,9 @@ Model ReadVrml(const std::string& path, const ImportOptions& options); // VRML 1
 Model ReadStl(const std::string& path, const ImportOptions& options);  // text and binary
 Model ReadPly(const std::string& path, const ImportOptions& options);  // text and binary
 
+// Whether ReadModel takes the file for VRML or Inventor; false where it cannot be read.
+bool IsVrmlFile(const std::string& path);
+
 } // namespace dspace
 
 #endif

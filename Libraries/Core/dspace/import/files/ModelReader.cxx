@@ -1,8 +1,6 @@
 #include <dspace/import/files/ModelReader.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 #include <new>
 
 #include <dspace/Error.h>
@@ -28,19 +26,6 @@ constexpr const char* Accepted =
 
 bool StartsWith(const std::string& text, const char* prefix) {
   return text.compare(0, std::strlen(prefix), prefix) == 0;
-}
-
-// The first bytes of a file that can be read.
-std::string FileStart(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    ReadFileBytes(path); // says what is wrong with it
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::string start(512, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
-  return start.empty() ? ReadFileBytes(path).substr(0, 512) : start;
 }
 
 // The reader that the first bytes ask for, or null where they are silent.
@@ -80,7 +65,7 @@ Reader ReaderByExtension(const std::string& extension) {
 
 Reader ReaderFor(const std::string& path) {
   const std::string object = FileObject(path);
-  const std::string start = FileStart(path);
+  const std::string start = ReadFileStart(path, 512);
   if (start.find("<robot") != std::string::npos || LowerExtension(path) == ".urdf") {
     throw Error(Error::Kind::Unsupported, object,
                 "is a URDF, which has joints: read it as a robot (in Python under a name that ends "
@@ -199,6 +184,14 @@ void CheckResult(const Model& model, const ImportOptions& options) {
 }
 
 } // namespace
+
+bool IsVrmlFile(const std::string& path) {
+  try {
+    return ReaderFor(path) == ReadVrml;
+  } catch (const Error&) {
+    return false;
+  }
+}
 
 Model ReadModel(const std::string& path, const ImportOptions& options) {
   try {

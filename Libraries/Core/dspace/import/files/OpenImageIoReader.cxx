@@ -6,6 +6,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 
 #include <dspace/import/files/FileNames.h>
@@ -52,12 +53,17 @@ void CheckSize(const OIIO::ImageSpec& spec, const std::string& object) {
   if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1 || spec.depth > 1) {
     throw Error(Error::Kind::Corrupt, object, "is an image of " + size);
   }
-  if (spec.width > MaximumImageSide || spec.height > MaximumImageSide ||
-      spec.image_bytes(true) > MaximumImageBytes) {
+  if (spec.width > MaximumImageSide || spec.height > MaximumImageSide) {
     throw Error(Error::Kind::Resource, object,
                 "is an image of " + size + "; at most " + std::to_string(MaximumImageSide) +
-                    " pixels a side and " + std::to_string(MaximumImageBytes) +
-                    " bytes decoded are read");
+                    " pixels a side are read");
+  }
+  // Four channels of 32 bits are the widest pixels that files of models have.
+  constexpr std::uint64_t WidestPixel = 16;
+  const std::uint64_t most = BudgetOf(Budget::ImagePixels);
+  if (spec.image_pixels() > most || spec.image_bytes(true) > WidestPixel * most) {
+    throw Error(Error::Kind::Resource, object,
+                "is an image of " + size + ": too many pixels; " + BudgetText(Budget::ImagePixels));
   }
 }
 

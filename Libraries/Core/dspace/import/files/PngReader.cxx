@@ -5,6 +5,7 @@
 
 #include <png.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/import/files/ImageReader.h>
 
 namespace dspace {
@@ -72,7 +73,7 @@ std::shared_ptr<const Image> ReadPlainPng(const void* data, std::size_t size,
   const std::size_t decoded =
       std::size_t(png.width) * std::size_t(png.height) * std::size_t(image->channels);
   if (png.width > png_uint_32(MaximumImageSide) || png.height > png_uint_32(MaximumImageSide) ||
-      decoded > MaximumImageBytes) {
+      std::uint64_t(png.width) * png.height > BudgetOf(Budget::ImagePixels)) {
     png_image_free(&png);
     return nullptr;
   }

@@ -2,7 +2,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/commands/terrain/TerrainBeforehand.h>
-#include <dspace/import/urdf/Urdf.h>
+#include <dspace/import/worker/ModelImport.h>
 
 namespace dspace::session {
 namespace {
@@ -17,7 +17,7 @@ void ReadModels(const v1::ImportObject& command, ReadBeforehand& into) {
 }
 
 void ReadVisuals(const std::string& path, const ImportOptions& options, ReadBeforehand& into) {
-  for (const UrdfLink& link : ReadUrdf(AbsolutePath(path), options).links) {
+  for (const UrdfLink& link : ImportUrdf(AbsolutePath(path), options).links) {
     for (const UrdfVisual& visual : link.visuals) {
       if (visual.shape != UrdfVisual::Shape::Mesh || visual.missing) {
         continue;

@@ -5,6 +5,7 @@
 #include <dspace/FrameRules.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/commands/objects/RobotLevels.h>
+#include <dspace/import/worker/ModelImport.h>
 #include <dspace/messages/Convert.h>
 
 namespace dspace::session {
@@ -195,7 +196,7 @@ void LoadRobot(const Context& context, v1::LoadRobot& command) {
   const std::string path = AbsolutePath(command.path());
   ImportOptions options;
   options.strict = command.strict();
-  const Urdf urdf = ReadUrdf(path, options);
+  const Urdf urdf = ImportUrdf(path, options);
   std::string name = command.name();
   if (name.empty()) {
     name = MappedFrameName(urdf.name.empty() ? std::filesystem::path(path).stem().string()

@@ -5,6 +5,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/commands/objects/ObjectTools.h>
+#include <dspace/import/worker/ModelImport.h>
 #include <dspace/messages/Convert.h>
 
 namespace dspace::session {
@@ -59,7 +60,7 @@ RobotLevels(const Context& context, v1::LoadRobot& command, const Urdf& urdf,
   }
   for (v1::LoadRobot::Level& given : *command.mutable_level()) {
     given.set_path(AbsolutePath(given.path()));
-    const Urdf coarse = ReadUrdf(given.path(), options);
+    const Urdf coarse = ImportUrdf(given.path(), options);
     Check(given.path(), coarse, urdf);
     for (const std::string& warning : UrdfWarnings(coarse)) {
       context.reply.add_warning(warning);

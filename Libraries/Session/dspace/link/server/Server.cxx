@@ -16,6 +16,7 @@
 #include <dspace/Checks.h>
 #include <dspace/Error.h>
 #include <dspace/link/server/ServerService.h>
+#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 namespace {
@@ -223,7 +224,11 @@ bool Server::Run(const SessionWork& work, double seconds) {
     if (fresh) {
       work.reset();
     }
-    v1::Reply reply = work.execute(task.command);
+    v1::Reply reply =
+        task.rejection.empty()
+            ? work.execute(task.command)
+            : ErrorReply(v1::Error::RESOURCE, "command",
+                         "command " + std::to_string(task.number) + ": " + task.rejection);
     lock.lock();
     ++hub.counts.commands;
     hub.Recycle(std::move(task.command), task.bytes);

@@ -12,6 +12,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <dspace/link/SnapshotMessages.h>
+#include <dspace/link/server/RequestBytes.h>
 #include <dspace/link/server/Server.h>
 #include <dspace/link/server/ServerListener.h>
 #include <dspace/proto/service.grpc.pb.h>
@@ -114,6 +115,7 @@ struct Task {
   bool noReply;
   std::size_t bytes;
   v1::Command command;
+  std::string rejection; // why it came without its command
 };
 
 struct Server::Hub {

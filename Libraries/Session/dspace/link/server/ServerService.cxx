@@ -289,6 +289,7 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
       return {StatusCode::INVALID_ARGUMENT, "a message after the first is not `send`"};
     }
     v1::SendCommand& send = *request.mutable_send();
+    std::string rejection = TakeRejection();
     // The memory of the command, which may be far larger than the message: an empty message has two
     // bytes on the wire.
     const std::size_t bytes = send.command().SpaceUsedLong() + sizeof(Task);
@@ -328,7 +329,8 @@ Status Server::Service::Read(Stream& stream, DriveStream& me, std::uint64_t gene
       return Status::OK;
     }
     hub.writer.queued = send.number();
-    Task task{generation, send.number(), send.no_reply(), bytes, {}};
+    Task task{generation, send.number(), send.no_reply(), bytes, {}, {}};
+    task.rejection = std::move(rejection);
     task.command.Swap(send.mutable_command());
     if (!hub.recycled.empty()) {
       send.mutable_command()->Swap(&hub.recycled.back());

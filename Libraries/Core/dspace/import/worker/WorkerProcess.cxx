@@ -1,0 +1,286 @@
+#include <dspace/import/worker/WorkerProcess.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <new>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <dlfcn.h>
+#include <poll.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <dspace/Budgets.h>
+#include <dspace/Error.h>
+#include <dspace/import/files/ImageCodec.h>
+#include <dspace/import/files/ImportFile.h>
+#include <dspace/import/worker/ModelBytes.h>
+#include <dspace/import/worker/UrdfBytes.h>
+#include <dspace/import/worker/WorkerMessage.h>
+
+namespace dspace {
+namespace {
+
+constexpr int Control = 3;
+using Clock = std::chrono::steady_clock;
+
+int Session = -1; // a child's socket to the session
+
+// The child may open nothing: the session checks the name and opens the file.
+int AskForFile(const std::string& path) {
+  ByteWriter text;
+  text.Text(path);
+  WorkerMessage answer;
+  if (!SendWorkerMessage(Session, WorkerMessage::Kind::Open, text.Text()) ||
+      !ReceiveWorkerMessage(Session, answer)) {
+    _exit(EXIT_FAILURE); // nobody waits for the result
+  }
+  if (answer.kind == WorkerMessage::Kind::Opened && answer.descriptor.Get() >= 0) {
+    return answer.descriptor.Release();
+  }
+  throw ErrorOf(answer.payload, FileObject(path));
+}
+
+void Limit(int resource, std::uint64_t value) {
+  const rlimit limit = {value, value};
+  setrlimit(static_cast<__rlimit_resource>(resource), &limit);
+}
+
+void LimitMemory(std::uint64_t memory) {
+  // The shadow memory of the address sanitizer needs the address space.
+  if (dlsym(RTLD_DEFAULT, "__asan_init")) {
+    return;
+  }
+  std::uint64_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  Limit(RLIMIT_AS, memory + pages * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE)));
+}
+
+void LimitChild(const WorkerRequest& request) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  Limit(RLIMIT_CORE, 0);
+  Limit(RLIMIT_FSIZE, request.memory); // of the result, which is a file in memory
+  const rlimit processor = {request.seconds, request.seconds + 1};
+  setrlimit(RLIMIT_CPU, &processor);
+  LimitMemory(request.memory);
+  std::set_new_handler([] { _exit(WorkerExitForMemory); });
+  // Rules of the operating system for files and sockets belong here: the child needs only to read
+  // the libraries and fonts of the system, and the socket that it has.
+}
+
+Descriptor ResultFile() {
+  Descriptor file(memfd_create("dspace-import", MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  if (file.Get() < 0) {
+    throw Error(Error::Kind::Io, "the result of an import",
+                "has no file in memory: " + std::generic_category().message(errno));
+  }
+  return file;
+}
+
+void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
+  ImportOptions options;
+  options.strict = request.strict;
+  options.pointCloud = request.pointCloud;
+  options.maximumTriangles = static_cast<std::size_t>(request.maximumTriangles);
+  const bool hadCodec = ImageCodecIsLoaded();
+  const Descriptor result = ResultFile();
+  ByteWriter into(result.Get());
+  if (request.what == WorkerRequest::What::Image) {
+    WriteImage(*readers.image(request.path), into);
+  } else if (request.what == WorkerRequest::What::Urdf) {
+    WriteUrdf(readers.urdf(request.path, options), into);
+  } else {
+    WriteModel(readers.model(request.path, options), into);
+  }
+  into.Flush();
+  ByteWriter done;
+  done.Number<std::uint8_t>(!hadCodec && ImageCodecIsLoaded());
+  SendWorkerMessage(Session, WorkerMessage::Kind::Done, done.Text(), result.Get());
+}
+
+[[noreturn]] void RunChild(const WorkerRequest& request, const WorkerReaders& readers) {
+  LimitChild(request);
+  SetBudget("image_pixels", request.imagePixels);
+  SetImportFileOpener(AskForFile);
+  try {
+    Serve(request, readers);
+  } catch (const Error& error) {
+    SendWorkerMessage(Session, WorkerMessage::Kind::Failed, ErrorText(error));
+  } catch (const std::bad_alloc&) {
+    _exit(WorkerExitForMemory);
+  } catch (const std::exception& error) {
+    SendWorkerMessage(Session, WorkerMessage::Kind::Failed,
+                      ErrorText(Error(Error::Kind::Corrupt, FileObject(request.path),
+                                      std::string("cannot be read: ") + error.what())));
+  }
+  _exit(EXIT_SUCCESS);
+}
+
+// The process that forks: it runs no code of importers after its start, and has one thread.
+class Worker {
+public:
+  explicit Worker(const WorkerReaders& readers) : Readers_(readers) {
+    sigset_t children;
+    sigemptyset(&children);
+    sigaddset(&children, SIGCHLD);
+    sigprocmask(SIG_BLOCK, &children, nullptr);
+    this->Ended_ = Descriptor(signalfd(-1, &children, SFD_CLOEXEC | SFD_NONBLOCK));
+  }
+
+  int Run() {
+    for (;;) {
+      std::vector<pollfd> watched = {{Control, POLLIN, 0}, {this->Ended_.Get(), POLLIN, 0}};
+      for (const auto& [process, child] : this->Children_) {
+        watched.push_back({child.socket.Get(), 0, 0}); // only whether the session has closed it
+      }
+      if (::poll(watched.data(), watched.size(), this->NextDeadline_ms()) < 0 && errno != EINTR) {
+        return EXIT_FAILURE;
+      }
+      this->EndAbandoned(watched);
+      this->EndLate();
+      this->Reap();
+      if (watched[0].revents != 0 && !this->TakeRequest()) {
+        return EXIT_SUCCESS; // PR_SET_PDEATHSIG ends the children
+      }
+    }
+  }
+
+private:
+  struct Child {
+    Descriptor socket;
+    Clock::time_point deadline;
+    bool late = false;
+  };
+
+  bool TakeRequest() {
+    WorkerMessage message;
+    if (!ReceiveWorkerMessage(Control, message)) {
+      return false;
+    }
+    if (message.kind == WorkerMessage::Kind::WarmCodec) {
+      try {
+        LoadImageCodec();
+      } catch (const Error&) {
+        // The child that needs it says why it cannot be loaded.
+      }
+      return true;
+    }
+    if (message.kind == WorkerMessage::Kind::Document) {
+      this->Fork(RequestOf(message.payload), std::move(message.descriptor));
+    }
+    return true;
+  }
+
+  void Fork(const WorkerRequest& request, Descriptor socket) {
+    const pid_t process = ::fork();
+    if (process == 0) {
+      ::close(Control);
+      this->Ended_.Close();
+      this->Children_.clear(); // the sockets of other documents
+      sigset_t none;
+      sigemptyset(&none);
+      sigprocmask(SIG_SETMASK, &none, nullptr);
+      Session = socket.Get();
+      RunChild(request, this->Readers_);
+    }
+    if (process < 0) {
+      SendWorkerMessage(socket.Get(), WorkerMessage::Kind::Failed,
+                        ErrorText(Error(Error::Kind::Resource, FileObject(request.path),
+                                        "no process can be made to read it: " +
+                                            std::generic_category().message(errno))));
+      return;
+    }
+    const auto wait = std::chrono::seconds(std::min<std::uint64_t>(request.seconds, 1000000));
+    this->Children_.emplace(process, Child{std::move(socket), Clock::now() + wait});
+  }
+
+  int NextDeadline_ms() const {
+    auto next = Clock::time_point::max();
+    for (const auto& [process, child] : this->Children_) {
+      next = child.late ? next : std::min(next, child.deadline);
+    }
+    if (next == Clock::time_point::max()) {
+      return -1;
+    }
+    const auto wait = std::chrono::duration_cast<std::chrono::milliseconds>(next - Clock::now());
+    return static_cast<int>(
+        std::clamp<std::int64_t>(wait.count() + 1, 0, std::numeric_limits<int>::max()));
+  }
+
+  void EndAbandoned(const std::vector<pollfd>& watched) {
+    std::size_t at = 2;
+    for (auto& [process, child] : this->Children_) {
+      if (watched[at++].revents != 0) {
+        ::kill(process, SIGKILL);
+        child.socket.Close(); // poll() leaves out what is negative
+      }
+    }
+  }
+
+  void EndLate() {
+    const auto now = Clock::now();
+    for (auto& [process, child] : this->Children_) {
+      if (!child.late && now >= child.deadline) {
+        child.late = true;
+        ::kill(process, SIGKILL);
+      }
+    }
+  }
+
+  void Reap() {
+    signalfd_siginfo ignored;
+    while (::read(this->Ended_.Get(), &ignored, sizeof ignored) > 0) {
+    }
+    int status = 0;
+    for (pid_t process = 0; (process = ::waitpid(-1, &status, WNOHANG)) > 0;) {
+      const auto found = this->Children_.find(process);
+      if (found == this->Children_.end()) {
+        continue;
+      }
+      const bool signaled = WIFSIGNALED(status);
+      const WorkerDeath death = found->second.late ? WorkerDeath::Timeout
+                                : signaled         ? WorkerDeath::Signal
+                                                   : WorkerDeath::Exit;
+      ByteWriter text;
+      text.Number(static_cast<std::uint8_t>(death));
+      text.Number<std::int32_t>(signaled ? WTERMSIG(status) : WEXITSTATUS(status));
+      if (found->second.socket.Get() >= 0) {
+        SendWorkerMessage(found->second.socket.Get(), WorkerMessage::Kind::Died, text.Text());
+      }
+      this->Children_.erase(found);
+    }
+  }
+
+  WorkerReaders Readers_;
+  Descriptor Ended_;
+  std::map<pid_t, Child> Children_;
+};
+
+} // namespace
+
+int RunImportWorker(const WorkerReaders& readers, void (*warm)()) {
+  std::signal(SIGPIPE, SIG_IGN);
+  ::close_range(Control + 1, ~0U, 0);
+  Worker worker(readers);
+  if (warm) {
+    warm();
+  }
+  return worker.Run();
+}
+
+} // namespace dspace
