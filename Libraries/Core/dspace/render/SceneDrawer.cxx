@@ -319,6 +319,9 @@ bool SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView
   double nearest = list.NearestDepth();
   bool others = !list.Batches().empty(); // what takes the shadows of the ground from maps
   for (const DrawCustom& object : list.Customs()) {
+    if (object.covered) {
+      continue; // its ground stands for it
+    }
     CustomDrawer& drawer = *this->Customs_[object.object->custom.get()].drawer;
     const CustomDrawing drawing = this->Drawing(object, list, view, samples);
     nearest = std::min(nearest, drawer.NearestDepth(drawing));

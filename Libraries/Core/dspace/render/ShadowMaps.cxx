@@ -140,7 +140,7 @@ std::vector<LightHull> ShadowMaps::HullsOf(const DrawList& list, const DrawView&
     }
   }
   for (const DrawCustom& object : list.Customs()) {
-    if (painter.GroundOf(object) == ground) {
+    if (!object.covered && painter.GroundOf(object) == ground) {
       const std::vector<LightHull> more = painter.Hulls(object, list, view);
       hulls.insert(hulls.end(), more.begin(), more.end());
     }

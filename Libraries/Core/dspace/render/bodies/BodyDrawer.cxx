@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "vtk_glew.h"
 
@@ -141,9 +140,6 @@ bool BodyDrawer::IsSmall(const BodyView& body, const CustomDrawing& drawing) {
 }
 
 double BodyDrawer::NearestDepth(const CustomDrawing& drawing) {
-  if (drawing.object.covered) {
-    return std::numeric_limits<double>::infinity();
-  }
   const auto body = this->Body_.lock();
   const Eigen::Affine3d& X = drawing.object.X_VO;
   const double distance = X.translation().norm() - body->Bounds().radius * LargestStretch(X);
