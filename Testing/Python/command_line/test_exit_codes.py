@@ -25,6 +25,8 @@ CASES = {
     "power": (("--site", "1,2", "--body", "moon", "--panel", "1", *TIMES, "--load", "x"),
               ("--site", "1,2", "--body", "vulcan", "--panel", "1", *TIMES)),
     "serve": (("--max-connections", "x"), ("--listen", "nowhere")),
+    "sites": (("--terrain", NONE, "--site", "1,2", "--radius", "x", *SPAN),
+              ("--terrain", NONE, "--site", "1,2", "--radius", "100", *SPAN)),
     "sky": (("--time", "2026-11-01", "--site", "3", "--look-at", "sun"),
             ("--time", "2026-11-01", "--site", "3,4", "--look-at", "vulcan")),
     "terrain": (("render", NONE, "--out", "a.png", "--fov", "x"), ("info", NONE)),
