@@ -10,6 +10,7 @@ import pathlib
 
 import numpy as np
 import pytest
+from needs import needs_module
 
 import dspace
 from dspace.frames.poses import quaternion_of_matrix
@@ -83,7 +84,7 @@ def test_the_moon_is_as_in_the_flight_photograph():
     for path in (PHOTO, OEM, TEXTURE):
         if not path.exists():
             pytest.skip(f"real data absent: set DSPACE_DATA to the folder that has {path.name}")
-    pytest.importorskip("osgeo.gdal")
+    needs_module("osgeo.gdal", "python3-gdal")
     grey = photograph()
     x, y, radius = limb(grey)
     rows, columns = np.nonzero(grey > 0.35)

@@ -10,7 +10,7 @@ import pathlib
 
 import numpy as np
 import pytest
-from needs import lacks
+from needs import lacks, needs_module
 
 import dspace
 from dspace.frames.poses import quaternion_of_matrix
@@ -207,7 +207,7 @@ def sky(scene):
         pytest.skip("real data absent: set DSPACE_DATA to the folder that has stars/tetra3_photos")
     if not os.path.exists(KSTARS_PATH):
         lacks("kstars-data")
-    pytest.importorskip("osgeo.gdal")
+    needs_module("osgeo.gdal", "python3-gdal")
     return Sky(scene)
 
 
