@@ -11,9 +11,9 @@ class RecordedFiles:
     """The files of a RecordingFile on the machine that plays it.
 
     Packed files are unpacked into a temporary folder, at their own paths below it; close() removes the folder. Other
-    files on this machine must be unchanged (check=False: not checked). unpack_limit: as in RecordingFile.check. Raises dspace.Corrupt, dspace.NotFound,
-    dspace.Io or dspace.Resource, which names the first file that is not. The C++ class RecordedFiles
-    (RecordedFiles.h) implements it."""
+    files on this machine must be unchanged (check=False: not checked). unpack_limit: as in RecordingFile.check. Raises
+    dspace.Corrupt, dspace.NotFound, dspace.Io or dspace.Resource, which names the first file that is not. The C++ class
+    RecordedFiles (RecordedFiles.h) implements it."""
 
     def __init__(self, file, check=True, unpack_limit=None):
         self.vtk = _vtk.vtkDspaceRecordedFiles()
