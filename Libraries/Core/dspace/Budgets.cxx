@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t Mebi = std::uint64_t(1) << 20;
 constexpr std::uint64_t Gibi = std::uint64_t(1) << 30;
-constexpr std::size_t BudgetCount = 5;
+constexpr std::size_t BudgetCount = 8;
 
 std::array<std::atomic<std::uint64_t>, BudgetCount>& BudgetValues() {
   static std::array<std::atomic<std::uint64_t>, BudgetCount> values;
@@ -42,7 +42,14 @@ const std::vector<BudgetInfo>& Budgets() {
       {Budget::ImportMemory, "import_memory", "the bytes of the process that reads a model",
        4 * Gibi, 64 * Mebi, 1024 * Gibi},
       {Budget::ImportSeconds, "import_seconds", "the seconds in which a model is read", 300, 1,
-       1000000}};
+       1000000},
+      // The whole Earth by pixels of 1 m has 8e14.
+      {Budget::RasterPixels, "raster_pixels", "the pixels of one raster", 1024 * 1024 * Gibi, 1,
+       std::uint64_t(1) << 62},
+      {Budget::MosaicFiles, "mosaic_files", "the files that a mosaic makes be opened", 20000, 1,
+       1000000000},
+      {Budget::MosaicBytes, "mosaic_bytes", "the bytes of the document of a mosaic", 64 * Mebi, 1,
+       64 * Gibi}};
   return budgets;
 }
 

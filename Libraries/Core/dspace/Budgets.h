@@ -15,7 +15,11 @@ enum class Budget {
   BlockBytes,      // block_bytes: of one block (tile, strip) of a raster, decoded
   MessageElements, // message_elements: fields and numbers in one command of another process
   ImportMemory,    // import_memory: bytes of the process that reads a model (ModelImport.h)
-  ImportSeconds    // import_seconds: its processor time, and its time by the clock
+  ImportSeconds,   // import_seconds: its processor time, and its time by the clock
+  RasterPixels,    // raster_pixels: columns times rows of one raster
+  MosaicFiles,     // mosaic_files: files that a mosaic (VRT) of another process makes be opened in
+                   // all, each as often as it is named: sources, their sources, and so on
+  MosaicBytes      // mosaic_bytes: of its document
 };
 
 struct BudgetInfo {

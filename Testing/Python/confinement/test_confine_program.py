@@ -132,6 +132,7 @@ may("listen unix", lambda: socket.socket(socket.AF_UNIX).bind(path + "2"))
 may("packet", lambda: socket.socket(socket.AF_PACKET, socket.SOCK_DGRAM))
 may("vsock", lambda: socket.socket(socket.AF_VSOCK))
 may("pair", lambda: socket.socketpair())
+socket.socketpair(type=socket.SOCK_SEQPACKET)
 """
 
 

@@ -15,7 +15,8 @@ def get():
     image_pixels: width times height of one image that is decoded. block_bytes: the decoded bytes of one block (tile,
     strip) of a raster. message_elements: fields, items and messages in one command of another process or a recording.
     import_memory: bytes of the process that reads a model. import_seconds: its processor time, and its time by the
-    clock.
+    clock. raster_pixels: columns times rows of one raster. mosaic_files: files that a mosaic (VRT) makes be opened in all,
+    each as often as it is named, in `dspace serve` and playback; mosaic_bytes: of its document.
     """
     lines = vtk.vtkDspaceSession.GetLimits().splitlines()
     return {name: int(value) for name, value in (line.split() for line in lines)}

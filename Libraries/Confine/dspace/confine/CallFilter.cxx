@@ -155,11 +155,12 @@ void RejectSockets(Filter& filter, const CallRules& rules) {
   }
   if (!rules.connect) {
     filter.Reject(SCMP_SYS(connect));
-    // Messages of these kinds can name any address: only streams remain.
+    // Messages can name any address, except on sockets of streams and of sequences of packets.
     for (std::uint64_t type = 0; type < 16; ++type) {
-      if (type != SOCK_STREAM) {
-        for (const std::uint64_t domain : {AF_UNIX, AF_INET, AF_INET6}) {
-          for (const int call : {SCMP_SYS(socket), SCMP_SYS(socketpair)}) {
+      for (const std::uint64_t domain : {AF_UNIX, AF_INET, AF_INET6}) {
+        const bool own = type == SOCK_STREAM || (type == SOCK_SEQPACKET && domain == AF_UNIX);
+        for (const int call : {SCMP_SYS(socket), SCMP_SYS(socketpair)}) {
+          if (!own) {
             filter.Reject(call, {SCMP_A0(SCMP_CMP_MASKED_EQ, Word, domain),
                                  SCMP_A1(SCMP_CMP_MASKED_EQ, 0xF, type)});
           }

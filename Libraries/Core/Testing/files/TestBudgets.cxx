@@ -35,7 +35,8 @@ TEST(Budgets, RejectWhatIsNoLimit) {
   } catch (const Error& error) {
     EXPECT_EQ(std::string(error.what()),
               "limit 'pixels': there is no such limit; accepted: image_pixels, block_bytes, "
-              "message_elements, import_memory, import_seconds");
+              "message_elements, import_memory, import_seconds, raster_pixels, mosaic_files, "
+              "mosaic_bytes");
   }
   try {
     SetBudget("import_seconds", 0);

@@ -11,6 +11,7 @@
 #include <cpl_error.h>
 #include <cpl_string.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
@@ -18,7 +19,6 @@
 #include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
-#include <dspace/raster/RasterLimits.h>
 #include <dspace/raster/SelfContainedDrivers.h>
 #include <dspace/raster/UnderlyingFile.h>
 
@@ -200,15 +200,13 @@ std::string AcceptedNames(unsigned flags) {
 
 // Of a raster whose blocks and levels could not be counted in time.
 void CheckPixels(GDALDataset& dataset, const std::string& path) {
-  const std::uint64_t limit = PixelLimit.Value();
   const int columns = dataset.GetRasterXSize();
   const int rows = dataset.GetRasterYSize();
-  if (columns > 0 && rows > 0 && std::uint64_t(columns) * std::uint64_t(rows) > limit) {
+  if (columns > 0 && rows > 0 &&
+      std::uint64_t(columns) * std::uint64_t(rows) > BudgetOf(Budget::RasterPixels)) {
     throw Error(Error::Kind::Resource, "file '" + path.substr(0, 1000) + "'",
-                "it has " + std::to_string(columns) + " x " + std::to_string(rows) +
-                    " pixels; accepted: up to " + std::to_string(limit) +
-                    " in all, or with a higher limit in the environment variable " +
-                    PixelLimit.variable);
+                "it has " + std::to_string(columns) + " x " + std::to_string(rows) + " pixels; " +
+                    BudgetText(Budget::RasterPixels));
   }
 }
 

@@ -35,7 +35,7 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   Documents in the place of a name, and names with a driver's prefix, are rejected.
 // - Only SelfContainedDrivers open it, or VRT for a mosaic whose sources (MosaicSources) pass the
 //   same checks first, each of them opened once, and whose documents name a limited number of files
-//   in all (MosaicFileLimit).
+//   in all (Budget::MosaicFiles).
 // - A dataset that names its overviews itself (OVERVIEW_FILE in the domain OVERVIEWS of its
 //   metadata) is rejected.
 // - The guard checks every file that belongs to the dataset, with links resolved. Links beside the
@@ -44,11 +44,11 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 //   (overviews, masks, sources), pass the same checks. One that fails them makes the whole opening
 //   fail.
 //
-// Throws Error(Resource) for a raster of more pixels than PixelLimit, or with a block larger than
-// Budget::BlockBytes (Budgets.h), before anything of it is read; under a guard also for a mosaic of
-// too many files. Throws Error under a guard: what the guard throws; NotFound; InvalidArgument (a
-// name that is rejected, see above); Unsupported (none of the accepted formats). Each names the
-// file.
+// Throws Error(Resource) for a raster of more pixels than Budget::RasterPixels, or with a block
+// larger than Budget::BlockBytes (Budgets.h), before anything of it is read; under a guard also for
+// a mosaic of too many files. Throws Error under a guard: what the guard throws; NotFound;
+// InvalidArgument (a name that is rejected, see above); Unsupported (none of the accepted formats).
+// Each names the file.
 DatasetPointer OpenDataset(const std::string& path, DatasetKind kind,
                            const char* const* drivers = nullptr);
 

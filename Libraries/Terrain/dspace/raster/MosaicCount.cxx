@@ -5,10 +5,10 @@
 
 #include <gdal_priv.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
-#include <dspace/raster/RasterLimits.h>
 
 namespace dspace {
 namespace {
@@ -40,10 +40,9 @@ public:
       files += 1 + (this->IsOne(source) ? this->FilesBelow(source, depth + 1) : 0);
       if (files > this->Limit_) {
         throw Error(Error::Kind::Resource, "file '" + path.substr(0, 1000) + "'",
-                    "this mosaic (VRT) makes more than " + std::to_string(this->Limit_) +
-                        " files be opened, counting the sources of its sources; accepted: up to "
-                        "that, or with a higher limit in the environment variable " +
-                        MosaicFileLimit.variable);
+                    "this mosaic (VRT) makes more files be opened, counting the sources of its "
+                    "sources; " +
+                        BudgetText(Budget::MosaicFiles));
       }
     }
     this->Known_[path] = files;
@@ -64,7 +63,7 @@ private:
     return known->second;
   }
 
-  const std::uint64_t Limit_ = MosaicFileLimit.Value();
+  const std::uint64_t Limit_ = BudgetOf(Budget::MosaicFiles);
   std::map<std::string, std::uint64_t> Known_;
   std::map<std::string, bool> Mosaics_;
 };

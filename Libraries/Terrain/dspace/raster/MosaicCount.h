@@ -13,7 +13,7 @@ bool IsMosaic(const std::string& path);
 //
 // Throws what MosaicSources throws, Error(InvalidArgument) for a mosaic that is among its own
 // sources or behind a chain of more than 16 mosaics, and Error(Resource) where there are more files
-// than MosaicFileLimit.
+// than Budget::MosaicFiles (Budgets.h).
 void CheckMosaicSize(const std::string& path);
 
 } // namespace dspace

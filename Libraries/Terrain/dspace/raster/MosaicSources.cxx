@@ -10,11 +10,11 @@
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
 #include <dspace/raster/NetworkScope.h>
-#include <dspace/raster/RasterLimits.h>
 
 namespace dspace {
 namespace {
@@ -41,14 +41,12 @@ bool IsHarmless(const std::string& element) {
 }
 
 void RequireShortDocument(const std::string& path) {
-  const std::uint64_t limit = MosaicByteLimit.Value();
   VSIStatBufL info = {};
-  if (VSIStatL(path.c_str(), &info) == 0 && std::uint64_t(info.st_size) > limit) {
+  if (VSIStatL(path.c_str(), &info) == 0 &&
+      std::uint64_t(info.st_size) > BudgetOf(Budget::MosaicBytes)) {
     throw Error(Error::Kind::Resource, "file '" + path + "'",
-                "this mosaic (VRT) has " + std::to_string(info.st_size) +
-                    " bytes; accepted: up to " + std::to_string(limit) +
-                    ", or with a higher limit in the environment variable " +
-                    MosaicByteLimit.variable);
+                "this mosaic (VRT) has " + std::to_string(info.st_size) + " bytes; " +
+                    BudgetText(Budget::MosaicBytes));
   }
 }
 

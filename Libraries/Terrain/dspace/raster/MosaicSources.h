@@ -14,7 +14,7 @@ namespace dspace {
 // Throws what the guard throws; Error(InvalidArgument) for a document that names data in another
 // way than as plain files or files on a server (warped, raw or computed bands, open options,
 // formats with a prefix, documents within documents), or has an element that this function does not
-// know; Error(Resource) for one of more bytes than MosaicByteLimit.
+// know; Error(Resource) for one of more bytes than Budget::MosaicBytes.
 std::vector<std::string> MosaicSources(const std::string& path);
 
 } // namespace dspace
