@@ -85,6 +85,20 @@ def write_recording(path, commands, snapshots):
         put_rows(database, "snapshot", snapshots)
 
 
+def write_packed(path, folder, commands):
+    """Writes a recording of commands with the files of a folder, which need not be what Dspace would pack."""
+    write_recording(str(path), [], [])
+    with sqlite3.connect(path) as database:
+        put_rows(database, "snapshot", [Row(0, 0.0, 0.0, 0, b"")])
+        put_rows(database, "command", [Row(i + 1, 0.0, 0.0, command.ListFields()[-1][0].number,
+                                           command.SerializeToString()) for i, command in enumerate(commands)])
+        for number, file in enumerate(sorted(folder.iterdir()), 1):
+            data = file.read_bytes()
+            asset = Asset(number, str(file), "read", len(data), hashlib.sha256(data).digest(), True)
+            put_assets(database, [asset])
+            put_contents(database, [Content(number, number, 0, len(data), data)])
+
+
 def rows_in(path):
     """Commands and snapshots of a sound recording by number, each checked; without the reader."""
     found = {"command": {}, "snapshot": {}}

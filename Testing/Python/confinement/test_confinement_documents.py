@@ -10,8 +10,10 @@ import pytest
 
 import confinement_documents
 import dspace
+import recording_support
 import traced_support as traced
 from dspace.command_line import confinement
+from dspace.proto import commands_pb2 as pb
 from served_support import socket_folder
 from terrain_support import gdal
 
@@ -119,3 +121,40 @@ def test_a_server_opens_none(made, tmp_path):
     assert content(outside) == before
     # Only those whose reference is left alone.
     assert set(accepted) <= {"geojson-crs-link", "geojson-crs-url"}
+
+
+def commands_of(each, ground):
+    """As a recording has them: a document as a terrain, or as shapes on one."""
+    commands = [pb.Command(scene="scene"), pb.Command(scene="scene")]
+    commands[0].create_scene.SetInParent()
+    terrain = commands[1].open_terrain
+    terrain.name, terrain.path, terrain.crs = "ground", ground if each.shapes else each.path, FLAT
+    terrain.mode, terrain.pixel_size, terrain.build_overviews = terrain.CLIPMAP, 1.0, False
+    if each.shapes:
+        commands.append(pb.Command(scene="scene"))
+        layer = commands[-1].add_terrain_layer
+        layer.terrain, layer.shapes.path, layer.shapes.crs = "ground", each.path, FLAT
+    return commands
+
+
+# One of each family: a playback takes seconds.
+PLAYED = ["vrt-ComplexSource", "vrt-warped", "vrt-vsicurl", "overview-png", "overview-on-server-tif", "ovr-mrf-tif", "mrf-cached",
+          "wms-TMS", "wms-cache-lower", "isis3", "pds", "pds4", "dimap", "hdf5-external", "ogrvrt", "ogrvrt-on-server"]
+
+
+def test_playback_opens_none(made, tmp_path):
+    documents, outside = made
+    before = content(outside)
+    tried = [each for each in documents if each.name in PLAYED]
+    assert len(tried) == len(PLAYED)
+    for each in tried:
+        folder = tmp_path / "inside" / each.name
+        ground = folder / "ground.asc"
+        ground.write_text(confinement_documents.GRID)
+        recording_support.write_packed(tmp_path / f"{each.name}.dspace", folder, commands_of(each, str(ground)))
+        log = tmp_path / f"trace-{each.name}"
+        done = subprocess.run([*traced.command(log), sys.executable, "-W", "ignore", "-m", "dspace", "play",
+                               str(tmp_path / f"{each.name}.dspace")], capture_output=True, text=True)
+        assert done.returncode == 1 and each.name in done.stderr, (each.name, done.stderr)
+        assert [line for line in traced.lines(log) if traced.opened(line, outside)[1] or traced.outgoing(line)] == []
+    assert content(outside) == before

@@ -3,9 +3,7 @@ neither read nor changed."""
 import base64
 import contextlib
 import ctypes
-import hashlib
 import os
-import sqlite3
 import struct
 import subprocess
 import sys
@@ -17,7 +15,7 @@ import pytest
 import dspace
 from dspace.links.serving import ServerProcess
 from dspace.proto import commands_pb2 as pb
-from recording_support import Asset, Content, Row, put_assets, put_contents, put_rows, write_recording
+from recording_support import write_packed
 from terrain_support import gdal
 
 GRID = "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + "1 2 3 4\n" * 4
@@ -165,20 +163,6 @@ def test_a_server_rejects_it(attack):
     assert touched == [] and content(outside) == before
 
 
-def packed(path, folder, commands):
-    """A recording with a folder's files, as an attacker makes one."""
-    write_recording(str(path), [], [])
-    with sqlite3.connect(path) as database:
-        put_rows(database, "snapshot", [Row(0, 0.0, 0.0, 0, b"")])
-        put_rows(database, "command", [Row(i + 1, 0.0, 0.0, command.ListFields()[-1][0].number,
-                                           command.SerializeToString()) for i, command in enumerate(commands)])
-        for number, file in enumerate(sorted(folder.iterdir()), 1):
-            data = file.read_bytes()
-            asset = Asset(number, str(file), "read", len(data), hashlib.sha256(data).digest(), True)
-            put_assets(database, [asset])
-            put_contents(database, [Content(number, number, 0, len(data), data)])
-
-
 def commands_for(name, inside, path):
     ground = pb.Command(scene="scene")
     ground.open_terrain.name = "ground"
@@ -199,7 +183,7 @@ def commands_for(name, inside, path):
 
 def test_a_packed_recording_is_rejected(attack, tmp_path):
     name, inside, path, outside = attack
-    packed(tmp_path / "run.dspace", inside, commands_for(name, inside, path))
+    write_packed(tmp_path / "run.dspace", inside, commands_for(name, inside, path))
     before = content(outside)
     with watched(outside) as touched, pytest.raises(dspace.Corrupt) as error:
         with dspace.Playback(tmp_path / "run.dspace") as run:
@@ -215,7 +199,7 @@ def test_a_recording_gives_no_document_as_a_name(attack, tmp_path):
     before = content(outside)
     (tmp_path / "nothing").mkdir()
     for number, text in enumerate((path.read_text().strip(), "/vsimem/a", f"MRF:1:{path}")):
-        packed(tmp_path / f"{number}.dspace", tmp_path / "nothing", commands_for(name, inside, text))
+        write_packed(tmp_path / f"{number}.dspace", tmp_path / "nothing", commands_for(name, inside, text))
         with watched(outside) as touched, pytest.raises(dspace.Corrupt, match="accepted here|no such file"):
             dspace.Playback(tmp_path / f"{number}.dspace").close()
         assert touched == [] and content(outside) == before
@@ -223,7 +207,7 @@ def test_a_recording_gives_no_document_as_a_name(attack, tmp_path):
 
 def test_dspace_play_rejects_it(attack, tmp_path):
     name, inside, path, outside = attack
-    packed(tmp_path / "run.dspace", inside, commands_for(name, inside, path))
+    write_packed(tmp_path / "run.dspace", inside, commands_for(name, inside, path))
     with watched(outside) as touched:
         done = subprocess.run([sys.executable, "-m", "dspace", "play", str(tmp_path / "run.dspace")],
                               capture_output=True, text=True)
@@ -287,7 +271,7 @@ def test_a_program_that_plays_keeps_its_own_rasters(tmp_path):
     (tmp_path / "outside").mkdir()
     path = tmp_path / "inside" / hdf5(tmp_path / "inside", tmp_path / "outside")
     commands = commands_for("hdf5", tmp_path / "inside", path)[:1]
-    packed(tmp_path / "run.dspace", tmp_path / "inside", commands)
+    write_packed(tmp_path / "run.dspace", tmp_path / "inside", commands)
     with dspace.Playback(tmp_path / "run.dspace") as run:
         run.step(1000)
         assert gdal.Open(str(path)).ReadAsArray().sum() == 120.0
