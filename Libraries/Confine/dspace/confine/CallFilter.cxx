@@ -58,7 +58,6 @@ void RejectReachingAround(Filter& filter) {
   for (const int call : {SCMP_SYS(ptrace),
                          SCMP_SYS(process_vm_readv),
                          SCMP_SYS(process_vm_writev),
-
                          SCMP_SYS(pidfd_getfd),
                          SCMP_SYS(bpf),
                          SCMP_SYS(perf_event_open),
