@@ -14,7 +14,7 @@ namespace {
 using google::protobuf::Descriptor;
 using google::protobuf::FieldDescriptor;
 
-constexpr int Deepest = 100; // nested messages, as protobuf's parser accepts
+constexpr int DeepestText = 100; // nested messages, as protobuf's parser accepts
 
 // The wire format: developers.google.com/protocol-buffers/docs/encoding.
 enum WireType { Varint = 0, Fixed64 = 1, Bytes = 2, Fixed32 = 5 };
@@ -49,7 +49,7 @@ bool IsForeign(std::string_view text) {
 class Walk {
 public:
   bool Message(std::string_view in, const Descriptor* type, std::string* out, int depth = 0) {
-    if (depth > Deepest) {
+    if (depth > DeepestText) {
       return false;
     }
     for (std::size_t at = 0; at < in.size();) {
