@@ -94,17 +94,21 @@ struct vtkDspaceServer::Internals {
   }
 
   void CheckFrames(const dspace::v1::Command& command) const {
-    if (!command.has_create_frame() && !command.has_load_robot()) {
+    const long long more = command.has_create_frames() ? command.create_frames().name_size()
+                           : command.has_create_frame() || command.has_load_robot() ? 1
+                                                                                    : 0;
+    if (more == 0) {
       return;
     }
     const std::string& name = dspace::session::SceneName(command);
     const auto scene = this->session->GetInterpreter().FindScene(name);
     const long long frames = scene ? static_cast<long long>(scene->Frames().Size()) : 0;
-    if (frames >= this->maximumFrames) {
-      throw dspace::Error(dspace::Error::Kind::Resource, "scene '" + name + "'",
-                          "it has " + std::to_string(frames) +
-                              " frames; accepted by this server: up to " +
-                              std::to_string(this->maximumFrames));
+    if (frames + more > this->maximumFrames) {
+      throw dspace::Error(
+          dspace::Error::Kind::Resource, "scene '" + name + "'",
+          "it has " + std::to_string(frames) + " frames" +
+              (more > 1 ? " and would have " + std::to_string(more) + " more" : "") +
+              "; accepted by this server: up to " + std::to_string(this->maximumFrames));
     }
   }
 

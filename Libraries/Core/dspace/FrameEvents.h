@@ -23,8 +23,9 @@ constexpr FrameId RootFrame = 1;
 struct FrameEvent {
   enum class Type { Created, Removed, Reparented, Renamed, PosesChanged };
   Type type;
-  // Created, Reparented, Renamed: the one frame. Removed: the frame and its subtree, children
-  // before parents, none of them in the tree any more. PosesChanged: the frames whose LOCAL pose
+  // Created: one frame, or those of CreateMany, parents before children. Reparented, Renamed: the
+  // one frame. Removed: the frame and its subtree, children before parents, none of them in the
+  // tree any more. PosesChanged: the frames whose LOCAL pose
   // changed, each once (their descendants move with them and are not listed).
   std::vector<FrameId> ids;
   std::uint64_t revision; // FrameTree::Revision() right after the change

@@ -34,6 +34,47 @@ FrameTree::FrameTree()
     : Ids_{RootFrame}, Parents_{0}, Local_{Pose()}, Nodes_{{"root", {}}}, SlotOf_{{RootFrame, 0}} {}
 
 FrameId FrameTree::Create(FrameId parent, const std::string& name, const Pose& X_PF, FrameId id) {
+  const FrameId made = id == NoFrame ? this->LargestId_ + 1 : id;
+  this->Append(parent, name, X_PF, made);
+  this->Emit(FrameEvent::Type::Created, {made});
+  return made;
+}
+
+FrameId FrameTree::CreateMany(std::vector<std::string> names, const std::vector<FrameId>& parents,
+                              const double* poses, FrameId first) {
+  const std::size_t n = names.size();
+  if (n == 0 || (parents.size() != 1 && parents.size() != n)) {
+    throw Error(Error::Kind::InvalidArgument, "new frames",
+                std::to_string(n) + " names and " + std::to_string(parents.size()) +
+                    " parents are given; accepted: one name or more, and one parent, or one each");
+  }
+  const std::size_t before = this->Size();
+  const FrameId largest = this->LargestId_;
+  const FrameId made = first == NoFrame ? largest + 1 : first;
+  if (n > before) { // else they grow by themselves, in constant time for each
+    this->Ids_.reserve(before + n);
+    this->Parents_.reserve(before + n);
+    this->Local_.reserve(before + n);
+    this->Nodes_.reserve(before + n);
+    this->SlotOf_.reserve(before + n);
+    this->ChildOf_.reserve(before + n);
+  }
+  try {
+    for (std::size_t i = 0; i < n; ++i) {
+      this->Append(parents[parents.size() == 1 ? 0 : i], std::move(names[i]),
+                   poses ? PoseFromRow(poses + PoseSize * i) : Pose(), made + i);
+    }
+  } catch (...) {
+    this->DropFrom(before);
+    this->LargestId_ = largest;
+    throw;
+  }
+  this->Emit(FrameEvent::Type::Created, {this->Ids_.end() - std::ptrdiff_t(n), this->Ids_.end()});
+  return made;
+}
+
+// All of a creation but its event.
+void FrameTree::Append(FrameId parent, std::string name, const Pose& X_PF, FrameId id) {
   const SlotIndex parentSlot = this->FindSlot(parent);
   if (!IsValidFrameName(name)) {
     RejectFrameName("child of " + this->Label(parent), name);
@@ -45,9 +86,7 @@ FrameId FrameTree::Create(FrameId parent, const std::string& name, const Pose& X
   if (!IsValidPose(X_PF)) {
     RejectPose(label(), X_PF);
   }
-  if (id == NoFrame) {
-    id = this->LargestId_ + 1;
-  } else if (this->Contains(id) || this->Retired_.count(id) != 0) {
+  if (id <= this->LargestId_ && (this->Contains(id) || this->Retired_.count(id) != 0)) {
     throw Error(Error::Kind::AlreadyExists, label(),
                 "the id " + std::to_string(id) + " is taken by " +
                     (this->Contains(id) ? this->Label(id) : "a frame that was removed") +
@@ -62,15 +101,24 @@ FrameId FrameTree::Create(FrameId parent, const std::string& name, const Pose& X
   this->Ids_.push_back(id);
   this->Parents_.push_back(parentSlot);
   this->Local_.push_back(NormalisedPose(X_PF));
-  this->Nodes_.push_back({name, {}});
   this->World_.Append();
   this->Nodes_[parentSlot].children.push_back(id);
   this->SlotOf_.emplace(id, slot);
   this->ChildOf_.emplace(ChildKey{parent, name}, id);
+  this->Nodes_.push_back({std::move(name), {}});
   this->LargestId_ = std::max(this->LargestId_, id);
   this->World_.Mark(slot);
-  this->Emit(FrameEvent::Type::Created, {id});
-  return id;
+}
+
+// Takes back what Append() has added since there were `first` frames.
+void FrameTree::DropFrom(std::size_t first) {
+  for (std::size_t slot = this->Size(); slot-- > first;) {
+    const SlotIndex parent = this->Parents_[slot];
+    this->Nodes_[parent].children.pop_back(); // the last was added last
+    this->ChildOf_.erase({this->Ids_[parent], this->Nodes_[slot].name});
+    this->SlotOf_.erase(this->Ids_[slot]);
+  }
+  this->Reorder(static_cast<SlotIndex>(first), static_cast<SlotIndex>(this->Size()), {});
 }
 
 std::vector<FrameId> FrameTree::Remove(FrameId id) {

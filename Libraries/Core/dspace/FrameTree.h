@@ -49,6 +49,14 @@ public:
   FrameId Create(FrameId parent, const std::string& name, const Pose& X_PF = {},
                  FrameId id = NoFrame);
 
+  // New frames, all or none: the i-th has names[i], the parent parents[i] (or parents[0], where
+  // there is one) and the pose of the i-th row of `poses` (px py pz qw qx qy qz scale; null:
+  // identity). Ids ascend one by one from `first`, or from the one after the largest ever used.
+  // A parent may be an earlier one of them. Returns the first id. Throws as Create(), and
+  // InvalidArgument without names or where the numbers of names and parents do not fit.
+  FrameId CreateMany(std::vector<std::string> names, const std::vector<FrameId>& parents,
+                     const double* poses = nullptr, FrameId first = NoFrame);
+
   // Removes the frame and its subtree; returns their ids, children before parents. Takes time in
   // proportion to the slots from the frame's on.
   std::vector<FrameId> Remove(FrameId id);
@@ -138,6 +146,8 @@ private:
     }
   };
 
+  void Append(FrameId parent, std::string name, const Pose& X_PF, FrameId id);
+  void DropFrom(std::size_t first);
   SlotIndex FindSlot(FrameId id) const;
   std::string PathOfSlot(SlotIndex slot) const;
   std::string Label(FrameId id) const; // "frame 'rover/mast'", for messages

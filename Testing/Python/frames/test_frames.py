@@ -48,6 +48,36 @@ def test_tree(scene):
     assert "not in the scene" in repr(camera)
 
 
+def test_many_frames_at_once(scene):
+    rng = np.random.default_rng(2)
+    rover = scene.add_frame("rover")
+    rows = np.array([random_pose(rng).row for _ in range(4)])
+    ids = scene.add_frames(["a", "b", "c", "d"], rover, rows)
+    assert list(scene.frames) == ["rover", "rover/a", "rover/b", "rover/c", "rover/d"]
+    assert [frame.id for frame in rover.children] == ids.tolist()
+    np.testing.assert_allclose(scene.poses(ids, relative_to=rover), rows, atol=1e-15)
+    more = scene.add_frames(("x", "y"), [scene["rover/a"], "rover/b"], rows[:2, :7])
+    np.testing.assert_array_equal(scene["rover/b/y"].position, rows[1, :3])
+    scene.add_frames(["below"] * 2, more)
+    scene.add_frames(["top"])
+    assert scene["rover/a/x/below"].parent == scene["rover/a/x"] and scene["top"].position.tolist() == [0, 0, 0]
+    before = list(scene.frames)
+    for wrong, kind, says in (
+            (lambda: scene.add_frames(["new", "a"], rover), dspace.AlreadyExists, "'rover/a'"),
+            (lambda: scene.add_frames(["new", "a/b"]), dspace.InvalidArgument, "'a/b'"),
+            (lambda: scene.add_frames([]), dspace.InvalidArgument, "one name or more"),
+            (lambda: scene.add_frames("new"), dspace.WrongType, "a list of names"),
+            (lambda: scene.add_frames(["new", 3]), dspace.WrongType, "3"),
+            (lambda: scene.add_frames(["new", "\udce4"]), dspace.InvalidArgument, "whole characters"),
+            (lambda: scene.add_frames(["m", "n", "o"], more), dspace.InvalidArgument, "2 parents"),
+            (lambda: scene.add_frames(["m", "n"], rover, rows), dspace.InvalidArgument, "4 poses"),
+            (lambda: scene.add_frames(["m"], rover, np.zeros((1, 6))), dspace.InvalidArgument, "shape"),
+            (lambda: scene.add_frames(["m"], 10 ** 6 + np.arange(1)), dspace.NotFound, "1000000")):
+        with pytest.raises(kind, match=says):
+            wrong()
+        assert list(scene.frames) == before
+
+
 def test_properties(scene):
     f = scene.add_frame("f")
     f.position = (1, 2, 3)

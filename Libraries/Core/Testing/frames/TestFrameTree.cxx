@@ -56,6 +56,73 @@ TEST(FrameTree, FindsByPath) {
   EXPECT_EQ(tree.Create(rover, "mast"), named + 1); // the old name is free
 }
 
+// The same tree as one frame at a time makes.
+TEST(FrameTree, CreatesManyFramesAtOnce) {
+  std::mt19937 random(3);
+  FrameTree tree, one;
+  const FrameId base = tree.Create(RootFrame, "base");
+  one.Create(RootFrame, "base");
+  std::vector<std::string> names;
+  std::vector<FrameId> parents;
+  std::vector<double> rows;
+  for (std::size_t i = 0; i < 300; ++i) {
+    names.push_back("f" + std::to_string(i));
+    parents.push_back(i < 3 ? base : base + 1 + random() % i); // of those before it, too
+    const Pose X = RandomPose(random);
+    dspace::testing::AppendRow(rows, X);
+    one.Create(parents.back(), names.back(), X);
+  }
+  std::vector<FrameEvent> events;
+  tree.AddListener([&](const FrameEvent& event) { events.push_back(event); });
+  EXPECT_EQ(tree.CreateMany(names, parents, rows.data()), base + 1);
+  ASSERT_EQ(events.size(), 1u);
+  EXPECT_EQ(events[0].type, FrameEvent::Type::Created);
+  ASSERT_EQ(events[0].ids.size(), 300u);
+  EXPECT_EQ(events[0].ids[299], base + 300);
+  for (FrameId id = RootFrame; id <= base + 300; ++id) {
+    EXPECT_EQ(tree.Path(id), one.Path(id));
+    EXPECT_EQ(tree.Find(tree.Path(id)), id);
+    EXPECT_EQ(tree.Children(id), one.Children(id));
+    EXPECT_EQ(tree.LocalPose(id), one.LocalPose(id));
+    EXPECT_EQ(tree.WorldPose(id), one.WorldPose(id));
+  }
+  EXPECT_EQ(tree.CreateMany({"x", "y"}, {base}, nullptr, 1000), 1000u);
+  EXPECT_EQ(tree.LocalPose(1001), Pose());
+  EXPECT_EQ(tree.Create(RootFrame, "after"), 1002u);
+}
+
+TEST(FrameTree, CreatesAllOfManyFramesOrNone) {
+  FrameTree tree;
+  const FrameId base = tree.Create(RootFrame, "base");
+  const FrameId gone = tree.Create(base, "gone");
+  tree.Create(base, "taken");
+  tree.Remove(gone);
+  std::vector<double> rows;
+  for (int i = 0; i < 3; ++i) {
+    dspace::testing::AppendRow(rows, Shift(i));
+  }
+  const auto rejected = [&](Kind kind, const std::vector<std::string>& words,
+                            std::vector<std::string> names, const std::vector<FrameId>& parents,
+                            FrameId first = NoFrame) {
+    ExpectRejected(tree, kind, words, [&] { tree.CreateMany(names, parents, rows.data(), first); });
+  };
+  rejected(Kind::AlreadyExists, {"'taken'"}, {"a", "b", "taken"}, {base});
+  rejected(Kind::AlreadyExists, {"'a'"}, {"a", "b", "a"}, {base});
+  rejected(Kind::InvalidArgument, {"'x/y'"}, {"a", "x/y", "b"}, {base});
+  rejected(Kind::NotFound, {"77"}, {"a", "b", "c"}, {base, base, 77});
+  rejected(Kind::NotFound, {"5"}, {"a", "b"}, {5, base}); // not yet there
+  rejected(Kind::AlreadyExists, {"removed"}, {"a", "b", "c"}, {base}, gone - 1 == base ? gone : 2);
+  rejected(Kind::InvalidArgument, {"9223372036854775808"}, {"a", "b"}, {base},
+           std::numeric_limits<std::int64_t>::max());
+  rejected(Kind::InvalidArgument, {"0 names"}, {}, {base});
+  rejected(Kind::InvalidArgument, {"3 names and 2 parents"}, {"a", "b", "c"}, {base, base});
+  rows[8 * 2 + 7] = 0.0;
+  rejected(Kind::InvalidArgument, {"c'", "scale 0"}, {"a", "b", "c"}, {base});
+  rows[8 * 2 + 7] = 1.0;
+  EXPECT_EQ(tree.CreateMany({"a", "b", "c"}, {base}, rows.data()), 5u); // as if none had been
+  EXPECT_EQ(tree.Children(base).size(), 4u);
+}
+
 TEST(FrameTree, NeverReusesAnId) {
   FrameTree tree;
   EXPECT_EQ(tree.Create(RootFrame, "a"), 2u);

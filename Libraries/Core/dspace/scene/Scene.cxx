@@ -102,6 +102,11 @@ ObjectId Scene::FindObject(const std::string& name) const {
   return found == this->ObjectNames_.end() ? 0 : found->second;
 }
 
+std::string Scene::FreeObjectName(const std::string& wanted) const {
+  return this->NumberedNames_.First(
+      wanted, [this](const std::string& name) { return this->ObjectNames_.count(name) != 0; });
+}
+
 void Scene::RequireFrame(const std::string& object, FrameId frame) const {
   if (!this->Frames_.Contains(frame)) {
     throw Error(Error::Kind::NotFound, object,
@@ -202,6 +207,7 @@ void Scene::RemoveObject(ObjectId id) {
   }
   EraseValue(this->Fragments_.Find(object.fragment).objects, id);
   this->ObjectNames_.erase(object.name);
+  this->NumberedNames_.Freed(object.name);
   this->Objects_.erase(id);
   this->RetiredObjects_.insert(id);
   this->ContentChanged();
@@ -362,6 +368,7 @@ void Scene::RemoveFrame(FrameId frame) {
     removed.insert(it->first);
     this->RetiredObjects_.insert(it->first);
     this->ObjectNames_.erase(it->second.name);
+    this->NumberedNames_.Freed(it->second.name);
     it = this->Objects_.erase(it);
   }
   for (SceneFragment& fragment : this->Fragments_.Fragments_) {

@@ -11,6 +11,7 @@
 
 #include <dspace/FrameTree.h>
 #include <dspace/scene/GraphicsObject.h>
+#include <dspace/scene/NumberedNames.h>
 #include <dspace/scene/SceneFragmentManager.h>
 #include <dspace/scene/SceneViews.h>
 
@@ -41,6 +42,9 @@ public:
   void RemoveObject(ObjectId id);
   const GraphicsObject& Object(ObjectId id) const;    // throws Error(NotFound)
   ObjectId FindObject(const std::string& name) const; // 0 when there is none
+  // `wanted`, or with " 2", " 3", ... appended the first name that no object has. Amortised
+  // logarithmic time.
+  std::string FreeObjectName(const std::string& wanted) const;
   const std::map<ObjectId, GraphicsObject>& Objects() const { return this->Objects_; }
   void SetObjectVisible(ObjectId id, bool visible);
   void SetObjectMaterial(ObjectId id, const MaterialOverride& material);
@@ -112,6 +116,7 @@ private:
   SceneFragmentManager Fragments_;
   std::map<ObjectId, GraphicsObject> Objects_;
   std::map<std::string, ObjectId> ObjectNames_;
+  mutable NumberedNames NumberedNames_; // what is known of them, for FreeObjectName
   ObjectId LargestObject_ = 0;
   std::unordered_set<ObjectId> RetiredObjects_; // ids of removed objects
   MeshRegister Meshes_;

@@ -85,6 +85,9 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(get_time {})", {}},
 
       {R"(create_frame { id: 40 parent: 11 name: "tip" pose { position { x: 2 } } })", {}},
+      {R"(create_frames { id: 41 name: "foot" name: "toe" parent: [10, 41]
+           pose: [1, 0, 0, 1, 0, 0, 0, 1, 0, 0, 2, 0, 1, 0, 0, 0.5] })",
+       {}},
       {R"(remove_frame { frame: 40 })", {R"(create_frame { id: 40 parent: 11 name: "tip" })"}},
       {R"(reparent_frame { frame: 11 parent: 1 keep_world_pose: true })", {}},
       {R"(rename_frame { frame: 11 name: "tower" })", {}},

@@ -33,6 +33,50 @@ TEST_F(FrameCommands, CreateFindAndListFrames) {
   EXPECT_EQ(frames.frame(1).child(0), mast);
 }
 
+TEST_F(FrameCommands, ManyFramesAreCreatedByOneCommand) {
+  const FrameId rover = this->AddFrame("rover");
+  v1::Command command;
+  v1::CreateFrames* create = command.mutable_create_frames();
+  for (const char* name : {"a", "b", "c"}) {
+    create->add_name(name);
+  }
+  EXPECT_EQ(this->Accept(command).frame().frame(), rover + 1);
+  EXPECT_EQ(create->id(), rover + 1); // as recorded
+  for (const double value : {1., 2., 3., 1., 0., 0., 0., 1., 0., 0., 5., 0.,
+                             1., 0., 0., 2., 7., 0., 0., 1., 0., 0., 0., 1.}) {
+    create->add_pose(value);
+  }
+  create->set_id(100);
+  create->add_parent(rover);
+  create->add_parent(100);
+  create->add_parent(0);
+  create->set_name(2, "d");
+  this->Accept(command);
+  const FrameTree& frames = this->Interpreter_.FindScene("scene")->Frames();
+  EXPECT_EQ(frames.Path(101), "rover/a/b");
+  EXPECT_EQ(frames.Path(102), "d");
+  EXPECT_EQ(frames.WorldPose(101).position, Eigen::Vector3d(1, 2, 8));
+  EXPECT_EQ(frames.LocalPose(101).scale, 2.0);
+
+  const auto rejected = [&](v1::Error::Kind kind, const std::string& text, auto spoil) {
+    v1::Command bad = command;
+    bad.mutable_create_frames()->set_id(0);
+    for (int i = 0; i < 3; ++i) {
+      bad.mutable_create_frames()->set_name(i, "n" + std::to_string(i));
+    }
+    spoil(*bad.mutable_create_frames());
+    this->Reject(bad, kind, text);
+  };
+  rejected(Kind::INVALID_ARGUMENT, "0 names", [](auto& c) { c.clear_name(); });
+  rejected(Kind::INVALID_ARGUMENT, "2 parents", [](auto& c) { c.mutable_parent()->RemoveLast(); });
+  rejected(Kind::INVALID_ARGUMENT, "2 poses", [](auto& c) { c.mutable_pose()->Truncate(16); });
+  rejected(Kind::INVALID_ARGUMENT, "pose", [](auto& c) { c.mutable_pose()->Truncate(17); });
+  rejected(Kind::ALREADY_EXISTS, "'rover'", [](auto& c) { c.set_name(2, "rover"); });
+  rejected(Kind::NOT_FOUND, "4711", [](auto& c) { c.set_parent(2, 4711); });
+  rejected(Kind::INVALID_ARGUMENT, "quaternion", [](auto& c) { c.set_pose(19, 0.5); });
+  rejected(Kind::INVALID_ARGUMENT, "UTF-8", [](auto& c) { c.set_name(1, "M\xe4st"); });
+}
+
 TEST(NearMatches, AreTheNamesThatMayBeMeant) {
   using session::NearMatches;
   const std::vector<std::string> names = {"rover", "rover/mast", "rover/mast_pan", "lander",

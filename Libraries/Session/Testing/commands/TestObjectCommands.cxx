@@ -49,6 +49,39 @@ TEST_F(ObjectCommands, AFileThatChangedIsReadAnew) {
   EXPECT_EQ(cache.LoadModel(path, {})->TriangleCount(), 2u);
 }
 
+TEST_F(ObjectCommands, UnnamedObjectsTakeTheLowestFreeNumber) {
+  const auto made = [this](FrameId frame = 0) {
+    return this->Describe(this->AddBox("", frame)).name();
+  };
+  for (const char* name : {"box", "box 2", "box 3", "box 4"}) {
+    EXPECT_EQ(made(), name);
+  }
+  this->AddBox("box 6");
+  EXPECT_EQ(made(), "box 5");
+  EXPECT_EQ(made(), "box 7");
+  const auto remove = [this](const char* name) {
+    v1::Command command;
+    command.mutable_remove_object()->set_object(
+        this->Interpreter_.FindScene("scene")->FindObject(name));
+    this->Accept(command);
+  };
+  remove("box 3");
+  remove("box");
+  EXPECT_EQ(made(), "box");
+  EXPECT_EQ(made(), "box 3");
+  v1::Command bad; // takes no name
+  bad.mutable_create_primitive()->mutable_box()->mutable_size()->set_x(-1);
+  this->Reject(bad, Kind::INVALID_ARGUMENT, "box 8");
+  const FrameId frame = this->AddFrame("frame");
+  EXPECT_EQ(made(frame), "box 8");
+  EXPECT_EQ(made(), "box 9");
+  v1::Command gone; // and its objects
+  gone.mutable_remove_frame()->set_frame(frame);
+  this->Accept(gone);
+  EXPECT_EQ(made(), "box 8");
+  EXPECT_EQ(made(), "box 10");
+}
+
 TEST_F(ObjectCommands, EveryPrimitiveIsMade) {
   const auto make = [this](auto fill) {
     v1::Command command;

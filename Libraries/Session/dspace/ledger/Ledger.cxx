@@ -52,6 +52,9 @@ struct LedgerScene {
     case C::kCreateFrame:
       this->frames.Create(command);
       return true;
+    case C::kCreateFrames:
+      this->frames.Create(command.create_frames());
+      return true;
     case C::kRemoveFrame:
       this->Remove(command.remove_frame().frame());
       return true;

@@ -91,6 +91,19 @@ void LedgerFrames::Create(const v1::Command& command) {
   this->Nodes_[create.id()].created = create.pose();
 }
 
+void LedgerFrames::Create(const v1::CreateFrames& command) {
+  for (int i = 0; i < command.name_size(); ++i) {
+    const LedgerId id = command.id() + LedgerId(i);
+    const LedgerId parent =
+        command.parent().empty() ? RootFrame : command.parent(command.parent_size() == 1 ? 0 : i);
+    this->AddNode(id, parent, command.name(i), {});
+    if (!command.pose().empty()) {
+      const double* row = command.pose().data() + std::ptrdiff_t(PoseSize) * i;
+      std::copy(row, row + PoseSize, this->Nodes_[id].pose.emplace().begin());
+    }
+  }
+}
+
 LedgerFrames::Removed LedgerFrames::Remove(LedgerId frame) {
   std::vector<LedgerId>& siblings = this->Nodes_[this->Nodes_[frame].parent].children;
   siblings.erase(std::remove(siblings.begin(), siblings.end(), frame), siblings.end());

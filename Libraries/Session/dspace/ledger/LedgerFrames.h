@@ -37,6 +37,7 @@ public:
 
   LedgerFrames();
   void Create(const v1::Command& command);
+  void Create(const v1::CreateFrames& command);
   struct Removed {
     std::unordered_set<LedgerId> frames;
     std::map<std::string, v1::Command> robots; // by key, the commands that loaded them

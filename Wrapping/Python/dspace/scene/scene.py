@@ -44,6 +44,17 @@ from dspace.terrain.factory import TerrainFactory
 MAIN = "main"  # the vantage that always exists
 
 
+def _pose_rows(poses, about):
+    """Poses as an array of rows of 8 numbers."""
+    accepted = "an array (n, 8) of px py pz qw qx qy qz scale, or (n, 7) without the scale"
+    array = array_of(poses, "poses", accepted, about)
+    if array.size and (array.ndim not in (1, 2) or array.shape[-1] not in (7, 8)):
+        raise InvalidArgument(f"{about}: the poses have shape {array.shape}; accepted: {accepted}")
+    if array.size and array.shape[-1] == 7:
+        array = np.concatenate((array, np.ones(array.shape[:-1] + (1,))), axis=-1)
+    return array
+
+
 class Scene(Strict):
     """One scene of a session.
 
@@ -120,6 +131,32 @@ class Scene(Strict):
         parent = Frame(self, self._frame_id(parent))
         return parent.add_frame(name, position, quaternion, scale, pose)
 
+    def add_frames(self, names, parent=None, poses=None):
+        """Many new frames in one command, all or none. Returns their ids as an integer array, in the order of the names;
+        set_poses and poses take it.
+
+        names: of each frame. parent: one frame of all (default: root), or one each, as a list or an integer array of
+        ids. poses: as for set_poses; default: identity."""
+        label = f"add_frames in scene {self._name_!r}"
+        names = items(names, "names", label, "a list of names")
+        command = self._command()
+        command.create_frames.SetInParent()
+        try:
+            command.create_frames.name.extend(names)
+        except (TypeError, ValueError) as error:
+            wrong = next((each for each in names if not isinstance(each, str)), None)
+            if wrong is None:  # surrogates, of a file's name
+                raise InvalidArgument(f"{label}: a name is not text of whole characters: {error}") from None
+            reject(label, "a name", wrong, "a str", WrongType)
+        if parent is None or isinstance(parent, (str, Frame)):
+            put_ids(command.create_frames, "parent", self, [] if parent is None else [parent])
+        else:
+            put_ids(command.create_frames, "parent", self, parent)
+        if poses is not None:
+            wire.put_array(command.create_frames, "pose", _pose_rows(poses, label))
+        first = self._execute(command).frame.frame
+        return np.arange(first, first + len(names), dtype=np.uint64)
+
     def frame(self, path):
         """The frame at a path such as "rover/mast"."""
         return self.root.frame(path)
@@ -137,13 +174,7 @@ class Scene(Strict):
 
         frames: Frames, paths, or an integer array of ids, each once; poses: an array (n, 8) of
         px py pz qw qx qy qz scale, or (n, 7) without the scale, which then is 1."""
-        accepted = "an array (n, 8) of px py pz qw qx qy qz scale, or (n, 7) without the scale"
-        array = array_of(poses, "poses", accepted, f"set_poses in scene {self._name_!r}")
-        if array.size and (array.ndim not in (1, 2) or array.shape[-1] not in (7, 8)):
-            raise InvalidArgument(f"set_poses in scene {self._name_!r}: the poses have shape "
-                                  f"{array.shape}; accepted: {accepted}")
-        if array.size and array.shape[-1] == 7:
-            array = np.concatenate((array, np.ones(array.shape[:-1] + (1,))), axis=-1)
+        array = _pose_rows(poses, f"set_poses in scene {self._name_!r}")
         command = self._command()
         command.set_poses.SetInParent()
         put_ids(command.set_poses, "frame", self, frames)

@@ -179,7 +179,7 @@ void CreateBody(const Context& context, v1::CreateBody& command) {
   v1::ObjectSettings& settings = *command.mutable_object();
   const std::string wanted = command.body().empty() ? "body" : command.body();
   const std::string name =
-      settings.name().empty() ? FreeObjectName(context.GetScene(), wanted) : settings.name();
+      settings.name().empty() ? context.GetScene().FreeObjectName(wanted) : settings.name();
   const std::string label = "object '" + name + "'";
   const KnownBody* known = command.body().empty() ? nullptr : &FindBody(label, command.body());
   if (settings.has_line_width() || settings.has_point_size() ||

@@ -28,7 +28,7 @@ std::string DefaultName(const std::string& drawer) {
 void CreateDrawn(const Context& context, v1::CreateDrawn& command) {
   v1::ObjectSettings& settings = *command.mutable_object();
   const std::string name = settings.name().empty()
-                               ? FreeObjectName(context.GetScene(), DefaultName(command.drawer()))
+                               ? context.GetScene().FreeObjectName(DefaultName(command.drawer()))
                                : settings.name();
   const std::string label = "object '" + name + "'";
   if (command.drawer().empty()) {

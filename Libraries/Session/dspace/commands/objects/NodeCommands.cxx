@@ -9,23 +9,31 @@
 #include <dspace/commands/objects/ImportTools.h>
 #include <dspace/commands/objects/ObjectTools.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/scene/NumberedNames.h>
 
 namespace dspace::session {
 namespace {
 
-// `wanted`, or numbered the first name that `taken` lacks, which then has it.
-std::string TakeName(const std::string& wanted, std::set<std::string>& taken) {
-  std::string name = wanted;
-  for (int n = 2; !taken.insert(name).second; ++n) {
-    name = wanted + " " + std::to_string(n);
+class TakenNames {
+public:
+  void Insert(const std::string& name) { this->Names_.insert(name); }
+  // `wanted`, or numbered the first name that is not taken, which then is.
+  std::string Take(const std::string& wanted) {
+    std::string name = this->Numbered_.First(
+        wanted, [this](const std::string& each) { return this->Names_.count(each) != 0; });
+    this->Names_.insert(name);
+    return name;
   }
-  return name;
-}
 
-std::set<std::string> NamesBelow(const FrameTree& frames, FrameId parent) {
-  std::set<std::string> names;
+private:
+  std::set<std::string> Names_;
+  NumberedNames Numbered_;
+};
+
+TakenNames NamesBelow(const FrameTree& frames, FrameId parent) {
+  TakenNames names;
   for (const FrameId child : frames.Children(parent)) {
-    names.insert(frames.Name(child));
+    names.Insert(frames.Name(child));
   }
   return names;
 }
@@ -145,7 +153,7 @@ private:
     const FrameId parent =
         node.parent < 0 ? this->Nodes_.base : this->Nodes_.frames[std::size_t(node.parent)];
     const std::string wanted = node.name.empty() ? "node" : MappedFrameName(node.name);
-    const std::string name = TakeName(wanted, this->Taken_[parent]);
+    const std::string name = this->Taken_[parent].Take(wanted);
     this->Nodes_.frames.push_back(frames.Create(parent, name, this->Nodes_.RestPoses()[index],
                                                 this->FrameIdAt(int(index) + 1)));
     this->Nodes_.objects.push_back(0);
@@ -169,7 +177,7 @@ private:
     settings.set_id(at < this->Command_.object_size() ? this->Command_.object(at) : 0);
     settings.set_name(at < this->Command_.object_name_size()
                           ? this->Command_.object_name(at)
-                          : FreeObjectName(this->Context_.GetScene(), wanted));
+                          : this->Context_.GetScene().FreeObjectName(wanted));
     std::vector<DetailLevel> levels(1);
     levels[0].parts = std::move(this->Parts_[index]);
     const ObjectId id = AddObject(this->Context_, settings, wanted, std::move(levels));
@@ -179,15 +187,15 @@ private:
 
   void AddLights() {
     Scene& scene = this->Context_.GetScene();
-    std::set<std::string> taken;
+    TakenNames taken;
     for (const Light& light : scene.Fragments().Lights()) {
-      taken.insert(light.name);
+      taken.Insert(light.name);
     }
     for (const ModelLight& from : this->Nodes_.GetModel().lights) {
       const std::string wanted =
           this->Command_.import().object().name() + "/" + (from.name.empty() ? "light" : from.name);
       const v1::SetLight light =
-          LightOf(from, this->Nodes_.frames[std::size_t(from.node)], TakeName(wanted, taken));
+          LightOf(from, this->Nodes_.frames[std::size_t(from.node)], taken.Take(wanted));
       scene.SetLight(ToLight(light));
       *this->Reply_.add_light() = light;
     }
@@ -197,7 +205,7 @@ private:
   v1::ImportNodes& Command_;
   ModelNodes& Nodes_;
   std::vector<std::vector<Part>> Parts_;
-  std::map<FrameId, std::set<std::string>> Taken_; // names below each frame
+  std::map<FrameId, TakenNames> Taken_; // names below each frame
   int NextObject_ = 0;
   v1::NodesReply Reply_;
 };
@@ -214,14 +222,14 @@ void ImportNodes(const Context& context, v1::ImportNodes& command) {
   v1::ObjectSettings& settings = *import.mutable_object();
   const Pose X_FB = OffsetPose(settings.offset(), label);
   const FrameId parent = ToFrame(settings.frame());
-  std::set<std::string> taken = NamesBelow(context.Frames(), parent);
+  TakenNames taken = NamesBelow(context.Frames(), parent);
   const auto model = ImportLevel(context, import, *import.mutable_level(0), command.lights(), true);
   ModelNodes nodes(model, scale, rotation);
   NodesBuilder builder(context, command, nodes);
   builder.CheckIds(label);
   if (settings.name().empty()) {
     const std::string stem = std::filesystem::path(import.level(0).path()).stem().string();
-    settings.set_name(TakeName(MappedFrameName(stem), taken));
+    settings.set_name(taken.Take(MappedFrameName(stem)));
   }
   builder.Build(X_FB);
   const FrameId base = nodes.base;

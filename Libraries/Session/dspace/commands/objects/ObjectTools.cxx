@@ -11,14 +11,6 @@ std::string ObjectLabel(const Scene& scene, ObjectId id) {
                                         : "object '" + found->second.name + "'";
 }
 
-std::string FreeObjectName(const Scene& scene, const std::string& wanted) {
-  std::string name = wanted;
-  for (int n = 2; scene.FindObject(name) != 0; ++n) {
-    name = wanted + " " + std::to_string(n);
-  }
-  return name;
-}
-
 Reflectance ToReflectance(const v1::Reflectance& from, const std::string& object) {
   if (!v1::Reflectance::Model_IsValid(from.model())) {
     Reject(object, "model " + std::to_string(from.model()) +
@@ -137,7 +129,7 @@ ObjectId AddObject(const Context& context, v1::ObjectSettings& settings, const s
   Scene& scene = context.GetScene();
   GraphicsObject object;
   object.id = settings.id();
-  object.name = settings.name().empty() ? FreeObjectName(scene, what) : settings.name();
+  object.name = settings.name().empty() ? scene.FreeObjectName(what) : settings.name();
   const std::string label = "object '" + object.name + "'";
   object.frame = ToFrame(settings.frame());
   object.nature = ToNature(settings.nature(), label);

@@ -13,9 +13,6 @@ namespace dspace::session {
 // "object 'rover'", for messages.
 std::string ObjectLabel(const Scene& scene, ObjectId id);
 
-// `wanted`, or with " 2", " 3", ... appended the first name that no object has.
-std::string FreeObjectName(const Scene& scene, const std::string& wanted);
-
 // Throws Error(InvalidArgument) naming `object` and the value.
 Reflectance ToReflectance(const v1::Reflectance& from, const std::string& object);
 

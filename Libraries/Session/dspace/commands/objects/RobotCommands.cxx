@@ -160,7 +160,7 @@ private:
     const bool named = this->NextVisual_ < this->Command_.object_name_size();
     object.name =
         named ? this->Command_.object_name(this->NextVisual_)
-              : FreeObjectName(scene, this->Command_.name() + "/" + this->Urdf_.links[link].name);
+              : scene.FreeObjectName(this->Command_.name() + "/" + this->Urdf_.links[link].name);
     ++this->NextVisual_;
     object.frame = this->LinkFrames_[link];
     object.nature = ToNature(this->Command_.nature(), RobotLabel(this->Command_.name()));

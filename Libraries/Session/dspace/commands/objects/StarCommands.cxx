@@ -33,7 +33,7 @@ StarLook LookOf(const v1::StarLook& from, StarLook look) {
 void CreateStars(const Context& context, v1::CreateStars& command) {
   v1::ObjectSettings& settings = *command.mutable_object();
   const std::string name =
-      settings.name().empty() ? FreeObjectName(context.GetScene(), "stars") : settings.name();
+      settings.name().empty() ? context.GetScene().FreeObjectName("stars") : settings.name();
   const std::string label = "object '" + name + "'";
   if (settings.material().ByteSizeLong() > 0 || settings.has_line_width() ||
       settings.has_point_size()) {

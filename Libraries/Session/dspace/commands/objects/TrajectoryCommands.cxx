@@ -225,7 +225,7 @@ std::vector<TrajectoryLine::Tick> TicksOf(const v1::CreateTrajectory& command,
 void CreateTrajectory(const Context& context, v1::CreateTrajectory& command) {
   v1::ObjectSettings& settings = *command.mutable_object();
   const std::string name =
-      settings.name().empty() ? FreeObjectName(context.GetScene(), "trajectory") : settings.name();
+      settings.name().empty() ? context.GetScene().FreeObjectName("trajectory") : settings.name();
   const std::string label = "object '" + name + "'";
   if (settings.material().ByteSizeLong() > 0 || settings.has_offset() ||
       settings.has_point_size()) {

@@ -24,6 +24,31 @@ void CreateFrame(const Context& context, v1::CreateFrame& command) {
   context.reply.mutable_frame()->set_frame(id);
 }
 
+void CreateFrames(const Context& context, v1::CreateFrames& command) {
+  const std::string label = "command create_frames";
+  const std::size_t n = std::size_t(command.name_size());
+  const std::size_t rows = RowsOf(command.pose_size(), PoseSize, label, "pose");
+  const std::size_t parents = std::size_t(command.parent_size());
+  if (n == 0 || (rows != 0 && rows != n) || (parents > 1 && parents != n)) {
+    Reject(label, std::to_string(n) + " names, " + std::to_string(parents) + " parents and " +
+                      std::to_string(rows) +
+                      " poses are given; accepted: one name or more, and of parents and poses none "
+                      "or one of each frame, or one parent of all");
+  }
+  std::vector<FrameId> above;
+  for (const FrameId parent : command.parent()) {
+    above.push_back(ToFrame(parent));
+  }
+  if (above.empty()) {
+    above.push_back(RootFrame);
+  }
+  const FrameId first =
+      context.Frames().CreateMany({command.name().begin(), command.name().end()}, above,
+                                  rows == 0 ? nullptr : command.pose().data(), command.id());
+  command.set_id(first);
+  context.reply.mutable_frame()->set_frame(first);
+}
+
 // The frame of a link or of a model's node belongs to the whole: poses may be set, the tree may
 // not be taken apart.
 void RejectRobotsLink(const Context& context, FrameId frame, const char* what) {
@@ -191,6 +216,7 @@ void FollowFrames(const Context& context, v1::FollowFrames& command) {
 void AddFrameCommands(Registry& registry) {
   using C = v1::Command;
   registry.Add(C::kCreateFrame, &C::mutable_create_frame, CreateFrame);
+  registry.Add(C::kCreateFrames, &C::mutable_create_frames, CreateFrames);
   registry.Add(C::kRemoveFrame, &C::mutable_remove_frame, RemoveFrame);
   registry.Add(C::kReparentFrame, &C::mutable_reparent_frame, ReparentFrame);
   registry.Add(C::kRenameFrame, &C::mutable_rename_frame, RenameFrame);

@@ -311,7 +311,7 @@ ObjectId AddTerrainObject(const Context& context, const v1::OpenTerrain& command
                           const TerrainObject& terrain) {
   GraphicsObject object;
   object.id = command.object_id();
-  object.name = command.object_name().empty() ? FreeObjectName(context.GetScene(), terrain.Name())
+  object.name = command.object_name().empty() ? context.GetScene().FreeObjectName(terrain.Name())
                                               : command.object_name();
   object.frame = ToFrame(command.frame());
   object.fragment = command.fragment();
