@@ -80,6 +80,12 @@ std::string DeclaredEncoding(const std::string& xml) {
   return close == std::string::npos ? std::string() : head.substr(at + 1, close - at - 1);
 }
 
+void NoteForeignText(const std::string& object) {
+  if (InnermostText) {
+    InnermostText->Objects_.insert(object);
+  }
+}
+
 ForeignTextScope::ForeignTextScope() : Outer_(std::exchange(InnermostText, this)) {}
 
 ForeignTextScope::~ForeignTextScope() {

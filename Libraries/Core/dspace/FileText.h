@@ -28,14 +28,20 @@ public:
   ForeignTextScope(const ForeignTextScope&) = delete;
   ForeignTextScope& operator=(const ForeignTextScope&) = delete;
 
+  // As ToFileText was given them.
+  const std::set<std::string>& Objects() const { return this->Objects_; }
   // One warning a file.
   std::vector<std::string> Warnings() const;
 
 private:
   friend std::string ToFileText(std::string, const std::string&, const std::string&);
+  friend void NoteForeignText(const std::string& object);
   std::set<std::string> Objects_;
   ForeignTextScope* Outer_;
 };
+
+// Notes a file in the present scope, which another process has read for this one.
+void NoteForeignText(const std::string& object);
 
 } // namespace dspace
 

@@ -43,8 +43,8 @@ dspace::Model Read(const std::string& path, const dspace::ImportOptions& options
   if (fault == "exit") {
     _exit(3);
   }
-  if (fault == "liar") { // a message of its own instead of a result
-    const char bytes[] = "\6nothing";
+  if (fault == "liar") {              // a message of its own instead of a result
+    const char bytes[] = "\6nothing"; // a kind, and a size that no message has
     for (int socket = 3; socket < 20; ++socket) {
       send(socket, bytes, sizeof bytes, MSG_NOSIGNAL);
     }

@@ -4,6 +4,7 @@
 #include "Sanitized.h"
 
 #include <dspace/Budgets.h>
+#include <dspace/FileText.h>
 #include <dspace/FilesRead.h>
 #include <dspace/import/files/ImageReader.h>
 #include <dspace/import/worker/Bytes.h>
@@ -134,6 +135,18 @@ TEST(ImportWorker, NotesAndChecksFilesInTheCallersThread) {
               [] { ImportWorker::OfProcess().ReadModel(SeedPath("part.gltf")); });
 }
 
+TEST(ImportWorker, NotesFilesWhoseTextIsOfAnotherEncoding) {
+  const testing::TempFolder folder;
+  const std::string path = folder.Write("latin.wrl", "#VRML V2.0 utf8\nDEF R\xfc"
+                                                     "ck Shape { geometry Box { } }\n");
+  const ForeignTextScope here;
+  ReadModel(path);
+  const ForeignTextScope there;
+  ImportWorker::OfProcess().ReadModel(path);
+  EXPECT_EQ(here.Objects().size(), 1u);
+  EXPECT_EQ(there.Objects(), here.Objects());
+}
+
 TEST(ImportWorker, ReadsVrmlApartAndOthersHere) {
   const std::uint64_t before = ImportWorker::OfProcess().Documents();
   ImportModel(SeedPath("text.stl"));
@@ -179,7 +192,7 @@ TEST_F(Faulty, ExitIsAnError) {
 }
 
 TEST_F(Faulty, MessageThatIsNoneIsAnError) {
-  this->ExpectFault("liar.stl", Error::Kind::Corrupt,
+  this->ExpectFault("liar.stl", Error::Kind::Internal,
                     "the process that reads it gave no valid result");
 }
 

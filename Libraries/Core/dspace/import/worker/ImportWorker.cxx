@@ -20,6 +20,7 @@
 
 #include <dspace/Budgets.h>
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/worker/ModelBytes.h>
 #include <dspace/import/worker/UrdfBytes.h>
@@ -30,18 +31,8 @@ extern char** environ;
 namespace dspace {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr int WorkerDescriptor = 3;
 constexpr int Grace_s = 10; // for the worker to say that a document took too long
-
-std::pair<Descriptor, Descriptor> Sockets() {
-  int both[2] = {-1, -1};
-  if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, both) != 0) {
-    throw Error(Error::Kind::Resource, "the process that reads models",
-                "no socket can be made: " + std::generic_category().message(errno));
-  }
-  return {Descriptor(both[0]), Descriptor(both[1])};
-}
 
 class SpawnSettings {
 public:
@@ -164,6 +155,12 @@ struct ImportWorker::Link {
   Descriptor control;
   pid_t process = -1; // of the worker
   pid_t owner = ::getpid();
+  std::mutex sending; // of messages, by several threads
+
+  bool Send(WorkerMessage::Kind kind, const std::string& payload = {}, int descriptor = -1) {
+    const std::lock_guard<std::mutex> lock(this->sending);
+    return SendWorkerMessage(this->control.Get(), kind, payload, descriptor);
+  }
 
   ~Link() {
     this->control.Close(); // it ends, with its children
@@ -177,36 +174,39 @@ struct ImportWorker::Link {
 
 namespace {
 
-// Asks for a document and serves its child until there is a result.
-Descriptor ResultOf(int control, const WorkerRequest& request, bool& sent, bool& codec) {
-  const std::string object = FileObject(request.path);
-  auto [mine, theirs] = Sockets();
-  sent =
-      SendWorkerMessage(control, WorkerMessage::Kind::Document, RequestText(request), theirs.Get());
-  theirs.Close();
-  if (!sent) {
-    return Descriptor();
+// Notes what the child says of the files that it has read, and returns whether it has loaded the
+// library of images.
+bool TakeNotes(const std::string& payload, const std::string& object) {
+  ByteReader from(payload.data(), payload.size(), object);
+  const bool codec = from.Flag();
+  for (std::size_t i = from.Count(sizeof(std::uint64_t)); i > 0; --i) {
+    NoteForeignText(from.Text());
   }
-  const auto deadline = Clock::now() + std::chrono::seconds(request.seconds + Grace_s);
+  from.End();
+  return codec;
+}
+
+// Serves the child until there is a result.
+Descriptor ResultOf(int child, const WorkerRequest& request, bool& codec) {
+  const std::string object = FileObject(request.path);
+  const auto until = WorkerClock::now() + std::chrono::seconds(request.seconds + Grace_s);
   WorkerMessage message;
   for (;;) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (!ReceiveWorkerMessage(mine.Get(), message,
-                              static_cast<int>(std::clamp<std::int64_t>(left, 0, 1 << 30)))) {
-      if (Clock::now() >= deadline) {
+    if (!ReceiveWorkerMessage(child, message, until)) {
+      if (WorkerClock::now() >= until) {
         throw Error(Error::Kind::Resource, object,
                     "it took too long to read; " + BudgetText(Budget::ImportSeconds));
       }
       throw Error(Error::Kind::Internal, object,
-                  "the process that reads it was ended from outside; accepted: another try");
+                  "the process that reads it gave no valid result: it was ended from outside, or "
+                  "sent what is no message");
     }
     switch (message.kind) {
     case WorkerMessage::Kind::Open:
-      AnswerOpen(mine.Get(), message.payload, object);
+      AnswerOpen(child, message.payload, object);
       break;
     case WorkerMessage::Kind::Done:
-      codec = message.payload == std::string(1, '\1');
+      codec = TakeNotes(message.payload, object);
       return std::move(message.descriptor);
     case WorkerMessage::Kind::Failed:
       throw ErrorOf(message.payload, object);
@@ -257,7 +257,7 @@ std::shared_ptr<ImportWorker::Link> ImportWorker::Started() {
     this->Link_.reset(); // that of the process from which this one was forked
   }
   if (!this->Link_) {
-    auto [mine, theirs] = Sockets();
+    auto [mine, theirs] = WorkerSockets();
     auto link = std::make_shared<Link>();
     link->process = Spawn(this->Program_, theirs.Get());
     link->control = std::move(mine);
@@ -287,13 +287,14 @@ Descriptor ImportWorker::Ask(const WorkerRequest& request) {
   // Twice: the worker may have ended since the last document.
   for (int i = 0; i < 2; ++i) {
     const std::shared_ptr<Link> link = this->Started();
-    bool sent = false;
-    bool codec = false;
-    Descriptor file = ResultOf(link->control.Get(), request, sent, codec);
-    if (codec) {
-      SendWorkerMessage(link->control.Get(), WorkerMessage::Kind::WarmCodec, {});
-    }
-    if (sent) {
+    auto [mine, theirs] = WorkerSockets();
+    if (link->Send(WorkerMessage::Kind::Document, RequestText(request), theirs.Get())) {
+      theirs.Close();
+      bool codec = false;
+      Descriptor file = ResultOf(mine.Get(), request, codec);
+      if (codec) {
+        link->Send(WorkerMessage::Kind::WarmCodec);
+      }
       return file;
     }
     this->Drop(link);

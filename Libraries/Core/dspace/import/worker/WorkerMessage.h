@@ -2,9 +2,11 @@
 #ifndef DSPACE_IMPORT_WORKER_MESSAGE_H
 #define DSPACE_IMPORT_WORKER_MESSAGE_H
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/import/worker/Bytes.h>
@@ -29,7 +31,8 @@ private:
   int Number_;
 };
 
-// One message of a SOCK_SEQPACKET socket.
+// One message of a stream of messages, over a Unix socket: a confined process may have no other
+// kind.
 struct WorkerMessage {
   enum class Kind : std::uint8_t {
     // Session to worker
@@ -39,7 +42,8 @@ struct WorkerMessage {
     Denied,    // an Error
     // Child to session
     Open,   // a path
-    Done,   // u8: whether the library of images was loaded; with a file of the result
+    Done,   // u8: whether the library of images was loaded, and texts: files whose text was of no
+            // known encoding (FileText.h); with a file of the result
     Failed, // an Error
     // Worker to session, on the child's socket, when the child has ended
     Died // u8 WorkerDeath, i32 number
@@ -71,11 +75,16 @@ WorkerRequest RequestOf(const std::string& payload);
 std::string ErrorText(const Error& error);
 Error ErrorOf(const std::string& payload, const std::string& object);
 
-// False where nobody reads any more. The message is cut at WorkerMessageSize.
+// A pair of connected sockets. Throws Error(Resource).
+std::pair<Descriptor, Descriptor> WorkerSockets();
+
+// False where nobody reads any more. Not from two threads at a time.
 bool SendWorkerMessage(int socket, WorkerMessage::Kind kind, const std::string& payload,
                        int descriptor = -1);
-// False at the end and for what is no message. Waits for at most `wait_ms`; -1: for ever.
-bool ReceiveWorkerMessage(int socket, WorkerMessage& message, int wait_ms = -1);
+// False at the end, for what is no message, and where it is not there at `until`.
+using WorkerClock = std::chrono::steady_clock;
+bool ReceiveWorkerMessage(int socket, WorkerMessage& message,
+                          WorkerClock::time_point until = WorkerClock::time_point::max());
 
 } // namespace dspace
 

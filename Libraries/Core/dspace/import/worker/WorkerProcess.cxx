@@ -26,6 +26,7 @@
 
 #include <dspace/Budgets.h>
 #include <dspace/Error.h>
+#include <dspace/FileText.h>
 #include <dspace/import/files/ImageCodec.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/worker/ModelBytes.h>
@@ -36,6 +37,7 @@ namespace dspace {
 namespace {
 
 constexpr int Control = 3;
+constexpr std::size_t MostForeignFiles = 8; // that are told of
 using Clock = std::chrono::steady_clock;
 
 int Session = -1; // a child's socket to the session
@@ -98,6 +100,7 @@ void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
   options.pointCloud = request.pointCloud;
   options.maximumTriangles = static_cast<std::size_t>(request.maximumTriangles);
   const bool hadCodec = ImageCodecIsLoaded();
+  const ForeignTextScope foreign;
   const Descriptor result = ResultFile();
   ByteWriter into(result.Get());
   if (request.what == WorkerRequest::What::Image) {
@@ -110,6 +113,12 @@ void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
   into.Flush();
   ByteWriter done;
   done.Number<std::uint8_t>(!hadCodec && ImageCodecIsLoaded());
+  const std::size_t files = std::min(foreign.Objects().size(), MostForeignFiles);
+  done.Number<std::uint64_t>(files);
+  auto file = foreign.Objects().begin();
+  for (std::size_t i = 0; i < files; ++i) {
+    done.Text(*file++);
+  }
   SendWorkerMessage(Session, WorkerMessage::Kind::Done, done.Text(), result.Get());
 }
 
