@@ -12,6 +12,7 @@ FORMATS = {".png": ("png", ("uint8", "uint16")), ".tif": ("tiff", ("uint8", "uin
            ".tiff": ("tiff", ("uint8", "uint16", "uint32", "float32")), ".exr": ("openexr", ("uint32", "float32"))}
 KIND = "dspace image"  # what "kind" is in the JSON of the description
 CHANNELS = {1: ("Y",), 3: ("R", "G", "B")}
+ROWS = 32  # compressed at a time: Ctrl-C is heard between
 TIME = "1970:01:01 00:00:00"  # in place of the time of writing: equal images have equal bytes
 
 
@@ -52,22 +53,21 @@ class ImageFile:
         oiio = _library()
         kinds = {"uint8": oiio.UINT8, "uint16": oiio.UINT16, "uint32": oiio.UINT32, "float32": oiio.FLOAT}
         self._kind, self._size, self._channels, self._row = np.dtype(kind), tuple(size), channels, 0
-        spec = oiio.ImageSpec(*size, channels, kinds[self._kind.name])
+        self._format, self._oiio = format, oiio
+        self._spec = spec = oiio.ImageSpec(*size, channels, kinds[self._kind.name])
         spec.channelnames = CHANNELS[channels]
         spec.attribute("ImageDescription", json.dumps({"kind": KIND, **(metadata or {})}, sort_keys=True))
         spec.attribute("DateTime", TIME)
         spec.attribute("compression", "zip")
-        self._out = None
+        self._out = None  # from the first rows on: libraries complain about files without any
         self._file = AtomicFile(path, self._about)
-        try:
-            out = oiio.ImageOutput.create(format)
-            if out is None or not out.open(self._file.temporary, spec):
-                why = oiio.geterror() if out is None else out.geterror()
-                raise Io(f"{self._about}: it cannot be written: {why}; accepted: an image that {format} can hold", path)
-            self._out = out
-        except BaseException:
-            self.close()
-            raise
+
+    def _open(self):
+        out = self._oiio.ImageOutput.create(self._format)
+        if out is None or not out.open(self._file.temporary, self._spec):
+            why = self._oiio.geterror() if out is None else out.geterror()
+            raise Io(f"{self._about}: it cannot be written: {why}; accepted: an image that {self._format} can hold", self._about)
+        self._out = out
 
     def write_rows(self, rows):
         """Writes the next rows, (n, width) or (n, width, channels)."""
@@ -77,10 +77,14 @@ class ImageFile:
                 or self._row + len(rows) > height:
             reject(self._about, "the shape and type of rows", (rows.shape, rows.dtype.name),
                    f"(n, {width}, {self._channels}) of {self._kind.name}, {height - self._row} rows at most", WrongType)
-        end = self._row + len(rows)
-        if not self._out.write_scanlines(self._row, end, 0, rows.reshape(len(rows), width, self._channels)):
-            raise Io(f"{self._about}: it cannot be written: {self._out.geterror()}", self._about)
-        self._row = end
+        if self._out is None:
+            self._open()
+        rows = rows.reshape(len(rows), width, self._channels)
+        for first in range(0, len(rows), ROWS):
+            part = rows[first:first + ROWS]
+            if not self._out.write_scanlines(self._row, self._row + len(part), 0, part):
+                raise Io(f"{self._about}: it cannot be written: {self._out.geterror()}", self._about)
+            self._row += len(part)
 
     def commit(self):
         if self._row != self._size[1]:
