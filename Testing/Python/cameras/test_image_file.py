@@ -85,6 +85,17 @@ def test_the_camera_of_a_scene_gives_its_pose(session, tmp_path):
     assert "camera" not in told and told["plane"] == "color"
 
 
+def test_counts_tell_their_sensor(session, tmp_path):
+    scene, rover = scene_of(session)
+    sensor = dspace.Sensor(exposure_s=0.02, bands_nm=[(600, 700)], gain=5)
+    counts = sensor.expose(scene.simulate_image(MODEL, frame=rover, radiance=True, color=False)["radiance"], MODEL, seed=3)
+    write_image(tmp_path / "a.png", counts, scene.image_metadata("counts", MODEL, frame=rover, sensor=sensor))
+    told = read_metadata(tmp_path / "a.png")
+    assert told["sensor"]["gain"] == 5 and told["sensor"]["exposure_s"] == 0.02 and told["unit"] == "counts"
+    assert dspace.Sensor(**told["sensor"]).settings == sensor.settings
+    np.testing.assert_array_equal(read_image(tmp_path / "a.png"), counts)
+
+
 def test_what_is_wrong_is_rejected_before_anything_is_drawn(session, tmp_path):
     scene, rover = scene_of(session)
     for path, plane, kind, message in (

@@ -101,7 +101,7 @@ class SceneImages:
             reject(about, "the plane", plane, ", ".join(map(repr, PLANES)))
         format_of(path, PLANES[plane][0])
         AtomicFile(path, f"image {str(path)!r}").close()  # a place that cannot be written is told before drawing
-        metadata = self.metadata(plane, model, camera, vantage, frame, exposure)
+        metadata = self.image_metadata(plane, model, camera, vantage, frame, exposure)
         command = self._command({plane: True}, model, camera, vantage, frame, size, scale, samples, exposure, ornaments, hide)
         band, file = None, None
         try:
@@ -124,9 +124,12 @@ class SceneImages:
                 file.close()
         return lens
 
-    def metadata(self, plane, model=None, camera=None, vantage=None, frame=None, exposure=1.0, sensor=None):
-        """What files of images tell about one: a dict for JSON, with the plane and its unit, the scene and its time [s], the
-        model and its pose in the root."""
+    def image_metadata(self, plane, model=None, camera=None, vantage=None, frame=None, exposure=1.0, sensor=None):
+        """What a file tells about an image that simulate_image() makes: a dict for JSON, with the plane and its unit, the scene
+        and its time [s], the model, its pose in the root, and the Sensor's numbers. plane: a plane's name, or "counts". Other
+        arguments: as for simulate_image().
+
+            write_image("left.png", counts, scene.image_metadata("counts", model, frame=rover, sensor=sensor))"""
         scene = self._scene
         if frame is not None:
             pose = (scene.frame(frame) if isinstance(frame, str) else frame).world_pose @ model.pose

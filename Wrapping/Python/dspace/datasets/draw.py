@@ -9,7 +9,7 @@ import numpy as np
 from dspace._core.files import atomic_write
 from dspace.batches.kinds import Batch, Kind
 from dspace.cameras.image_file import write_image
-from dspace.cameras.images import PLANES, UNITS, SceneImages
+from dspace.cameras.images import PLANES, UNITS
 from dspace.cameras.model import CameraModel
 from dspace.cameras.sensor import Sensor
 from dspace.datasets.labels import annotations
@@ -99,7 +99,6 @@ class Stage:
         content = self.job.content
         time, pose, index = self.job.parts(number)
         scene = self.scene(time)
-        images = SceneImages(scene)
         model, place = self.placed(scene, number)
         planes = set(content["planes"]) - {"counts"}
         if self.job.labels:
@@ -115,12 +114,12 @@ class Stage:
             values = picture[plane][..., :3] if plane == "color" else picture[plane]
             ending = {"color": "png", "counts": "png", "label": "tif"}.get(plane, content["floats"])
             file = f"{PREFIX % number}_{name}_{plane}.{ending}"
-            told = images.metadata(plane, model, exposure=content["exposure"], sensor=self.sensor if plane == "counts" else None, **place)
+            told = scene.image_metadata(plane, model, exposure=content["exposure"], sensor=self.sensor if plane == "counts" else None, **place)
             write_image(os.path.join(folder, file), values, told)
             with open(os.path.join(folder, file), "rb") as written:
                 data = written.read()
             files[plane] = {"name": file, "bytes": len(data), "crc32": zlib.crc32(data), "unit": UNITS.get(plane, "")}
-        told = images.metadata("", model, **place)
+        told = scene.image_metadata("", model, **place)
         record = {"number": number, "time_s": time, "camera": name, "pose_number": pose, "scene": told["scene"], "pose": told["pose"],
                   "size": list(model.size), "files": files, "annotations": self.annotations(scene, picture.get("label"))}
         atomic_write(os.path.join(folder, KIND.last(number)), json.dumps(record, sort_keys=True).encode())

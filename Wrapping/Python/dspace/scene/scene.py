@@ -215,6 +215,7 @@ class Scene(Strict):
 
     simulate_image = delegate(SceneImages, "simulate_image")
     save_image = delegate(SceneImages, "save_image")
+    image_metadata = delegate(SceneImages, "image_metadata")
     project_points = delegate(SceneImages, "project_points")
     pixel_rays = delegate(SceneImages, "pixel_rays")
 
