@@ -54,7 +54,7 @@ def rules_of(options):
 
 
 def run(options):
-    from dspace.movies.folder import file_of
+    from dspace.batches.runs import file_of
     _, function = file_of(options.source)
     if not function and not options.scheduler:  # a function is the user's own code, and a scheduler draws elsewhere
         confinement.confine(options, lambda: rules_of(options))
