@@ -110,11 +110,11 @@ def test_one_scene_goes_down_to_the_ground(session, rasters):
     scene = session.scene()
     scene.add_body("moon", terrain=rasters[4000])
     ground = scene.terrains["moon terrain"]
-    height = float(ground.height(10.0, 5.0, map=True))
+    height = float(ground.height(20.0, 5.0, map=True))
     assert abs(height) > 100.0
     before = None
     for above in 2.0 * 10.0 ** np.arange(8.0, -0.1, -0.5):
-        view = look(scene, R + height + above, size=101, fov=60.0)
+        view = look(scene, R + height + above, size=101, fov=60.0, longitude=20.0)
         depth, light = view.depth()[50, 50], view.radiance()[:, :, 1]
         if above > distance_for(13.0, 101, 60.0):
             assert depth == pytest.approx(above, rel=0.02)

@@ -8,7 +8,7 @@ namespace dspace {
 namespace {
 
 TEST(Budgets, HaveTheirStandardValuesInTheirRanges) {
-  ASSERT_EQ(Budgets().size(), 5u);
+  ASSERT_GE(Budgets().size(), 5u);
   for (std::size_t i = 0; i < Budgets().size(); ++i) {
     const BudgetInfo& info = Budgets()[i];
     EXPECT_EQ(static_cast<std::size_t>(info.budget), i) << info.name; // the order is the index

@@ -49,7 +49,7 @@ def _line_rows(line):
     on_ground = line.terrain is not None
     rows = [("Straight length", line.length, "length")]
     if on_ground:
-        rows += [("Distance in the map", line.distance, "length"), ("Length on the ground", line.ground_length, "length"),
+        rows += [("Horizontal distance", line.distance, "length"), ("Length on the ground", line.ground_length, "length"),
                  ("Climb", line.climb, "length"), ("Descent", line.descent, "length")]
     for i, length in enumerate(line.lengths):
         rows.append((f"Leg {i + 1}: straight length", length, "length"))
