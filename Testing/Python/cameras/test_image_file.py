@@ -96,6 +96,28 @@ def test_counts_tell_their_sensor(session, tmp_path):
     np.testing.assert_array_equal(read_image(tmp_path / "a.png"), counts)
 
 
+@pytest.mark.parametrize("settings", [
+    dict(bands_nm=[(600, 700)], point_spread=0.8, falloff=4), dict(bayer="RGGB", point_spread=2.5),
+    dict(read_noise=9, falloff=1), dict(bands_nm=[(500, 600)], dark_current=200, photon_noise=False)],
+    ids=lambda settings: "-".join(settings))
+def test_counts_by_tiles_are_those_of_the_whole_image(session, tmp_path, settings):
+    scene, rover = scene_of(session)
+    sensor = dspace.Sensor(exposure_s=0.004, full_well=9000, **settings)
+    radiance = scene.simulate_image(MODEL, frame=rover, radiance=True, color=False)["radiance"]
+    expected = sensor.expose(radiance, MODEL, seed=5, frame=9)
+    assert expected.std() > 10
+    for tile in (64, 512):
+        scene.save_image(tmp_path / "a.png", MODEL, frame=rover, plane="counts", sensor=sensor, seed=5, number=9, tile=tile)
+        np.testing.assert_array_equal(read_image(tmp_path / "a.png"), expected)
+    told = read_metadata(tmp_path / "a.png")
+    assert told["seed"] == 5 and told["number"] == 9 and dspace.Sensor(**told["sensor"]).settings == sensor.settings
+    with pytest.raises(dspace.WrongType, match="the sensor is None"):
+        scene.save_image(tmp_path / "b.png", MODEL, frame=rover, plane="counts")
+    with pytest.raises(dspace.InvalidArgument, match="the seed is -1"):
+        scene.save_image(tmp_path / "b.png", MODEL, frame=rover, plane="counts", sensor=sensor, seed=-1)
+    assert not (tmp_path / "b.png").exists()
+
+
 def test_what_is_wrong_is_rejected_before_anything_is_drawn(session, tmp_path):
     scene, rover = scene_of(session)
     for path, plane, kind, message in (

@@ -73,10 +73,12 @@ class ImageFile:
         """Writes the next rows, (n, width) or (n, width, channels)."""
         width, height = self._size
         rows = np.ascontiguousarray(rows)
-        if rows.dtype != self._kind or rows.reshape(len(rows), -1).shape[1] != width * self._channels \
+        if rows.dtype != self._kind or rows.shape[1:] not in ((width,), (width, self._channels)) or rows[:1].size % self._channels \
                 or self._row + len(rows) > height:
             reject(self._about, "the shape and type of rows", (rows.shape, rows.dtype.name),
                    f"(n, {width}, {self._channels}) of {self._kind.name}, {height - self._row} rows at most", WrongType)
+        if not len(rows):
+            return
         if self._out is None:
             self._open()
         rows = rows.reshape(len(rows), width, self._channels)

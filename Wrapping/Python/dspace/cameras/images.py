@@ -116,35 +116,46 @@ class SceneImages:
         return {**planes, "lens": lens}
 
     def save_image(self, path, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, plane="color",
-                   samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
+                   sensor=None, seed=0, number=0, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
         """Writes one plane of the image that simulate_image() makes, tile by tile: the memory that it takes grows with the
         width of the image, not with its height. Returns a LensPicture.
 
-        path: .png (color), .tif (every plane) or .exr (every plane but color); planes of floats are 32 bits, labels 32 bit
-        integers. The file is there when it is complete; an interrupted call leaves an earlier one. It holds the camera's
-        model, its pose in the scene's root and the time: `dspace camera info FILE`, or image_file.read_metadata(). Other
-        arguments: as for simulate_image(). Needs Debian's python3-openimageio."""
+        path: .png (color, counts), .tif (every plane) or .exr (every plane but color and counts); planes of floats are 32
+        bits, labels 32 bit integers, counts 16 bits. The file is there when it is complete; an interrupted call leaves an
+        earlier one. It holds the camera's model, its pose in the scene's root, the time and the sensor: `dspace camera info
+        FILE`, or image_file.read_metadata(). plane="counts": of a `sensor`, a Sensor, with the bytes of Sensor.expose(); seed
+        and number: its noise's seed and frame. Other arguments: as for simulate_image(). Needs Debian's python3-openimageio."""
         from dspace.cameras.image_file import ImageFile, format_of
+        from dspace.cameras.sensor import Exposure, Sensor
         about = "simulated image"
-        if plane not in PLANES:
-            reject(about, "the plane", plane, ", ".join(map(repr, PLANES)))
-        format_of(path, PLANES[plane][0])
+        counted = plane == "counts"
+        if plane not in PLANES and not counted:
+            reject(about, "the plane", plane, ", ".join(map(repr, (*PLANES, "counts"))))
+        if counted != isinstance(sensor, Sensor):
+            reject(about, "the sensor", sensor, "a dspace.Sensor with the plane 'counts', and None without it", WrongType)
+        format_of(path, np.uint16 if counted else PLANES[plane][0])
         AtomicFile(path, f"image {str(path)!r}").close()  # a place that cannot be written is told before drawing
-        metadata = self.image_metadata(plane, model, camera, vantage, frame, exposure)
-        command = self._command({plane: True}, model, camera, vantage, frame, size, scale, samples, exposure, ornaments, hide)
-        band, file = None, None
+        metadata = self.image_metadata(plane, model, camera, vantage, frame, exposure, sensor)
+        if counted:
+            metadata.update(seed=integer(seed, "the seed", about), number=integer(number, "the number", about))
+        command = self._command({"radiance" if counted else plane: True}, model, camera, vantage, frame, size, scale, samples,
+                                exposure, ornaments, hide)
+        band, file, exposed = None, None, None
         try:
             def take(x, y, width, height, part):
-                nonlocal band, file
+                nonlocal band, file, exposed
                 values, = part.values()
                 values = values[..., :3] if plane == "color" else values
                 if file is None:
-                    file = ImageFile(path, (width, height), values.shape[2] if values.ndim == 3 else 1, values.dtype, metadata)
+                    if counted:
+                        exposed = Exposure(sensor, (width, height), model, seed, number)
+                    channels = exposed.channels if counted else values.shape[2] if values.ndim == 3 else 1
+                    file = ImageFile(path, (width, height), channels, np.uint16 if counted else values.dtype, metadata)
                 if x == 0:
                     band = np.empty((values.shape[0], width) + values.shape[2:], values.dtype)
                 band[:, x:x + values.shape[1]] = values
                 if x + values.shape[1] >= width:
-                    file.write_rows(band)
+                    file.write_rows(exposed.add(band) if counted else band)
 
             lens = self._draw(command, take, tile, progress, size, model)
             file.commit()
