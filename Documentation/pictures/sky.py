@@ -58,14 +58,14 @@ def body_descent():
         east /= np.linalg.norm(east)
         north = np.cross(up, east)
         scene.sun.set(direction=tuple(0.75 * east + 0.15 * north + 0.6 * up), distance_au=1.52)
-        views = ((1.2e7 * up - 3e6 * north, 0.0 * up, 40), (site + 4.5e5 * up - 2.5e5 * north, site, 45),
-                 (place(137.32, -5.35, 9e3), place(137.30, -4.2, 0.0), 60),
-                 (place(137.3334, -4.7993, 2.0), place(137.36, -5.0, 600.0), 60))
+        views = ((1.1e7 * up - 3e6 * north, 0.0 * up, 40), (site + 2.5e5 * up - 1.2e5 * north, site, 45),
+                 (place(137.3, -4.3, 3500.0), place(137.7, -5.1, 0.0), 55),
+                 (place(137.3334, -4.7993, 2.0), place(137.5, -5.0, 100.0), 55))
         pictures = []
         for eye, target, fov in views:
             scene.add_camera("eye", eye=tuple(eye), target=tuple(target), up=tuple(north if fov < 50 else up), fov_deg=fov)
             view = scene.add_viewport(size, "eye", samples=2)
-            view.set(shadows=True, fill=0.02, exposure=2.0)
+            view.set(fill=0.02, exposure=4.5)
             pictures.append(view.image())
             view.remove()
     rows = [np.concatenate(pictures[:2], axis=1), np.concatenate(pictures[2:], axis=1)]
@@ -104,7 +104,7 @@ def artemis_photo():
         pose = dspace.Pose(position=tuple(-way), quaternion=tuple(quaternion_of_matrix(turn)))
         camera = scene.add_camera(pose=pose, fov_deg=2 * math.degrees(math.atan(height / 2 / focal)))
         view = scene.add_viewport((width, height), camera, samples=1)
-        view.set(shadows=True, fill=0.0, exposure=13.0)
+        view.set(shadows=True, fill=0.0, exposure=5.0)
         drawn = view.image()
     left, top, side = 1280, 640, 560
     pair = [np.repeat(photo[top:top + 800, left:left + side, None], 3, axis=2), drawn[top:top + 800, left:left + side]]

@@ -10,6 +10,7 @@ from dspace.objects.graphics import GraphicsObject, put_settings
 from dspace.sky.places import axes_of
 
 _OWN = ("frame", "on_body", "mode", "image_crs", "image_extent")  # of add_terrain, which add_body sets
+LEVEL_SIZE = 252  # cells along a level of a clipmap: the finest, for the limb of the whole body
 _AXES = re.compile(r'(?:ELLIPSOID|SPHEROID)\["[^"]*",\s*([0-9.eE+-]+),\s*([0-9.eE+-]+)')
 
 
@@ -46,7 +47,7 @@ class BodyFactory:
         and what add_terrain takes besides (patches of higher resolution, vertical_datum, ...). It is drawn in place of the
         ellipsoid where the disc has a radius of 12 pixels or more, in the body's texture, albedo and reflectance, so that
         one scene goes from deep space to the ground. The terrain is named as the body with " terrain" behind it
-        (scene.terrains) unless the dict names it; remove it with the body. radii are by default those of its CRS.
+        (scene.terrains) unless the dict names it, and has the finest level_size (252); remove it with the body. radii are by default those of its CRS.
         A texture lies on it as the layer "texture"; without one, and without an image or colour in the dict, it is white
         times the albedo. On a CRS with an ellipsoid, rows of textures must be geodetic latitudes."""
         if body is not None and (not isinstance(body, str) or not body):
@@ -101,6 +102,7 @@ class BodyFactory:
         if taken:
             reject(label, f"{taken[0]} of the terrain", given[taken[0]], "none: add_body sets it")
         given.setdefault("name", f"{name} terrain")
+        given.setdefault("level_size", LEVEL_SIZE)
         if not {"image", "color", "relief"} & set(given):
             given["color"] = settings.get("color") or (1.0, 1.0, 1.0)
         return self._scene.add_terrain(given.pop("path"), frame=settings.get("frame"), on_body=True, mode="clipmap", **given)
