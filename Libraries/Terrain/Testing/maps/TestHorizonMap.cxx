@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <gdal_priv.h>
 #include <gtest/gtest.h>
 
 #include <dspace/Error.h>
@@ -249,6 +250,61 @@ TEST_F(MapFiles, APartOfOtherInputsIsRefused) {
   EXPECT_THROW(HorizonMap{path}, Error);
   EXPECT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, path));
   EXPECT_THROW(WriteHorizonMap(this->Ground_, this->Options_, path), Error); // it exists
+}
+
+TEST_F(MapFiles, CellsOfPartsAreCopied) {
+  const std::string whole = this->Path("whole.tif");
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, this->Options_, whole));
+  const MapCells& cells = this->Options_.cells;
+  HorizonMapOptions half = this->Options_;
+  half.cells.rows = 2 * TileFile::Side; // 2 x 3 tiles
+  const std::string upper = this->Path("upper.tif");
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, half, upper));
+  HorizonMapOptions corner = this->Options_;
+  corner.cells.column += 2 * TileFile::Side;
+  corner.cells.row += 2 * TileFile::Side;
+  corner.cells.columns -= 2 * TileFile::Side;
+  corner.cells.rows -= 2 * TileFile::Side;
+  const std::string last = this->Path("last.tif");
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, corner, last));
+  HorizonMapOptions joined = this->Options_;
+  joined.parts = {upper, last};
+  const std::string path = this->Path("joined.tif");
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, joined, path));
+  EXPECT_TRUE(BytesOf(path) == BytesOf(whole));
+
+  // They are copied, not computed: changed values arrive, in their cells alone.
+  {
+    auto* dataset =
+        static_cast<GDALDataset*>(GDALOpen(last.c_str(), GA_Update)); // NOLINT: GDAL owns it
+    float value = 77.0f;
+    ASSERT_EQ(dataset->GetRasterBand(5)->RasterIO(GF_Write, 3, 2, 1, 1, &value, 1, 1, GDT_Float32,
+                                                  0, 0, nullptr),
+              CE_None);
+    GDALClose(dataset);
+  }
+  MapControl replace;
+  replace.replace = true;
+  ASSERT_TRUE(WriteHorizonMap(this->Ground_, joined, path, replace));
+  const HorizonMap changed(path);
+  const HorizonMap before(whole);
+  for (int r = 0; r < cells.rows; ++r) {
+    for (int c = 0; c < cells.columns; ++c) {
+      const bool there = c == 2 * TileFile::Side + 3 && r == 2 * TileFile::Side + 2;
+      const float expected = there ? 77.0f : before.Read(c, r, 1, 1)[4];
+      ASSERT_EQ(changed.Read(c, r, 1, 1)[4], expected) << c << ' ' << r;
+    }
+  }
+
+  joined.height = 1.0;
+  try {
+    WriteHorizonMap(this->Ground_, joined, this->Path("other.tif"));
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.GetKind(), Error::Kind::InvalidArgument);
+    EXPECT_NE(std::string(error.what()).find("a part of another horizon map"), std::string::npos);
+  }
+  EXPECT_FALSE(std::filesystem::exists(this->Path("other.tif.part")));
 }
 
 TEST_F(MapFiles, BadInputIsRejected) {

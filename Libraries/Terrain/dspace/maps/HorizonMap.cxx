@@ -1,5 +1,6 @@
 #include <dspace/maps/HorizonMap.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -135,6 +136,55 @@ TileFileLayout LayoutOf(const MapGround& ground, const HorizonMapOptions& option
   return layout;
 }
 
+// Maps of parts of the cells.
+class Parts {
+public:
+  Parts(const HorizonMapOptions& options, const GroundSurvey& survey) : Options_(options) {
+    for (const std::string& path : options.parts) {
+      this->Maps_.push_back(std::make_unique<HorizonMap>(path));
+      const HorizonMap& map = *this->Maps_.back();
+      if (map.TerrainHash() != survey.hash || map.Height() != options.height ||
+          map.Azimuths() != options.azimuths || map.Cells().every != options.cells.every) {
+        Reject("file '" + path + "'",
+               "it is a part of another horizon map, of terrain '" + map.Terrain() + "' by " +
+                   std::to_string(map.Azimuths()) + " azimuths at " + NumberText(map.Height()) +
+                   " m; accepted: a part with the ground, the cells' spacing, the height and the "
+                   "azimuths of the whole");
+      }
+    }
+  }
+
+  // The elevations of cells from (column, row) on, in tiles of TileFile; false if no part has them.
+  bool Copy(const PostBlock& block, std::vector<float>& elevations) const {
+    const int every = this->Options_.cells.every;
+    for (const auto& map : this->Maps_) {
+      const MapCells& cells = map->Cells();
+      const std::int64_t column = (block.column - cells.column) / every;
+      const std::int64_t row = (block.row - cells.row) / every;
+      if (column * every != block.column - cells.column || row * every != block.row - cells.row ||
+          column < 0 || row < 0 || column + block.width > cells.columns ||
+          row + block.height > cells.rows) {
+        continue;
+      }
+      const std::vector<float> read = map->Read(int(column), int(row), block.width, block.height);
+      auto from = read.begin();
+      for (int k = 0; k < this->Options_.azimuths; ++k) {
+        for (int r = 0; r < block.height; ++r, from += block.width) {
+          std::copy(from, from + block.width,
+                    elevations.begin() +
+                        std::ptrdiff_t((std::size_t(k) * TileFile::Side + r) * TileFile::Side));
+        }
+      }
+      return true;
+    }
+    return false;
+  }
+
+private:
+  const HorizonMapOptions& Options_;
+  std::vector<std::unique_ptr<HorizonMap>> Maps_;
+};
+
 } // namespace
 
 bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
@@ -149,6 +199,7 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
   if (!survey) {
     return false;
   }
+  const Parts parts(options, *survey);
   const TileFileLayout layout = LayoutOf(ground, options, *survey);
   TileFile file(path, layout, control.replace);
   HorizonOptions sweeping;
@@ -174,6 +225,9 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
     block.row = cells.row + std::int64_t(row) * TileFile::Side * cells.every;
     block.width = std::min(TileFile::Side, cells.columns - column * TileFile::Side);
     block.height = std::min(TileFile::Side, cells.rows - row * TileFile::Side);
+    if (parts.Copy(block, elevations)) {
+      return;
+    }
     std::vector<float> tangents(std::size_t(block.width) * block.height);
     for (int k = 0; k < options.azimuths && !stop; ++k) {
       sweep.SweepEvery(block, cells.every, 360.0 * k / options.azimuths, tangents.data());

@@ -19,6 +19,9 @@ struct HorizonMapOptions {
   MapCells cells;
   double height = 0.0; // [m] of the observers above the ground, 0 to 1e6
   int azimuths = 360;  // evenly spaced, clockwise from north, 1 to 3600
+  // Paths of complete maps of parts of its cells, which other processes wrote: what they hold is
+  // copied. A tile counts if one part has all of it.
+  std::vector<std::string> parts;
 };
 
 // Writes the map: a band per azimuth, elevations [deg] of the highest ground in sight over the
@@ -30,8 +33,9 @@ struct HorizonMapOptions {
 //
 // The result depends on the inputs alone, to the byte: neither on the threads nor on interruptions.
 // Returns false if control.progress ended it. Throws what TileFile, FillTiles and Survey throw,
-// Error(InvalidArgument) for an option out of range, and Error(Io) if the terrain changed while the
-// map was written.
+// Error(InvalidArgument) for an option out of range and for a part of another ground, height or
+// number of azimuths, what HorizonMap throws for a part, and Error(Io) if the terrain changed while
+// the map was written.
 bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
                      const std::string& path, const MapControl& control = {});
 

@@ -77,6 +77,19 @@ double CellSize(const MapGround& ground, const MapCells& cells) {
   return cells.every * std::sqrt(std::abs(ground.postToMap.linear().determinant()));
 }
 
+// Complete maps in the folder "PATH.parts", in the order of their names.
+std::vector<std::string> PartsOf(const std::string& path) {
+  std::vector<std::string> parts;
+  std::error_code none; // there is no such folder
+  for (const auto& entry : std::filesystem::directory_iterator(path + ".parts", none)) {
+    if (entry.path().extension() == ".tif") {
+      parts.push_back(entry.path().string());
+    }
+  }
+  std::sort(parts.begin(), parts.end());
+  return parts;
+}
+
 void MapHorizons(const Context& context, MapJobs& jobs, const v1::HorizonMap& command) {
   RunJob(context, jobs, command, [&](const std::string& path) {
     const auto ground = std::make_shared<const MapGround>(
@@ -87,6 +100,7 @@ void MapHorizons(const Context& context, MapJobs& jobs, const v1::HorizonMap& co
     if (command.azimuths() != 0) {
       options.azimuths = int(command.azimuths());
     }
+    options.parts = PartsOf(path);
     return MapJobs::Job{[ground, options, path](const MapControl& control) {
                           return WriteHorizonMap(*ground, options, path, control);
                         },
