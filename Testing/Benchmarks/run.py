@@ -11,7 +11,7 @@ def main():
     programs = sorted((build / "bin").glob("Bench*"))
     scripts = sorted(pathlib.Path(__file__).parent.glob("bench_*.py"))
     # What is built only where something is installed.
-    optional = {"BenchOsgTerrain": "it needs libopenscenegraph-dev"}
+    optional = {"BenchEmbree": "it needs libembree-dev", "BenchOsgTerrain": "it needs libopenscenegraph-dev"}
     absent = {n: why for n, why in optional.items() if not (build / "bin" / n).exists()}
     chosen = [p for p in programs + scripts
               if not names or any(n.lower() in p.name.lower() for n in names)]

@@ -18,13 +18,13 @@ FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "li
          "OpenSceneGraph": "libopenscenegraph-dev", "OpenSSL": "libssl-dev", "PkgConfig": "pkg-config",
          "PROJ": "libproj-dev", "Protobuf": "libprotobuf-dev", "Python3": "libpython3-dev", "SQLite3": "libsqlite3-dev",
          "Threads": "g++", "tinyobjloader": "libtinyobjloader-dev", "urdfdom": "liburdfdom-dev", "VTK": "libvtk9-dev",
-         "ZLIB": "zlib1g-dev", "PNG": "libpng-dev", "CAIRO": "libcairo2-dev",
+         "ZLIB": "zlib1g-dev", "PNG": "libpng-dev", "CAIRO": "libcairo2-dev", "embree": "libembree-dev",
          "ERFA": "liberfa-dev",
          "GEOGRAPHICLIB": "libgeographiclib-dev", "DSPACE_OIIO_INCLUDE": "libopenimageio-dev",
          "DSPACE_OIIO_LIBRARY": "libopenimageio-dev", "DSPACE_OIIO_UTIL_LIBRARY": "libopenimageio-dev",
          "DSPACE_IMATH_INCLUDE": "libimath-dev", "TinyGLTF": "libtinygltf-dev",
          "DSPACE_TINYXML_LIBRARY": "libtinyxml-dev", "Qt6": "qt6-base-dev"}
-OPTIONAL = {"DSPACE_CCACHE"}  # used where it is installed
+OPTIONAL = {"DSPACE_CCACHE", "grass"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
             "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools",
@@ -97,7 +97,7 @@ def programs(path):
 def test_programs_that_scripts_call():
     names = {name for folder in FOLDERS for path in scripts(folder) if path.parent != HERE
              and path.name != "test_needs.py" for name in programs(path)}
-    assert {"openssl", "protoc", "ruby"} <= names <= set(PROGRAMS)
+    assert {"openssl", "protoc", "ruby"} <= names <= set(PROGRAMS) | OPTIONAL
     assert set(PROGRAMS.values()) <= listed("run", "extra", "build", "test", "lint", "docs")
 
 
