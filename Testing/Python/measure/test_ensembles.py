@@ -37,7 +37,7 @@ def test_fields_have_the_stated_variogram(model, nugget):
         # The fields are independent: the mean of theirs scatters by their scatter / sqrt(n).
         assert abs(found.mean() - stated) < 4.5 * found.std() / math.sqrt(300) + 2e-4 * 1.5 ** 2
         assert found.std() / math.sqrt(300) < 0.05 * stated + 1e-3
-    assert variogram(0.0) == 0.0
+    assert variogram(0.0) == 0.0 and repr(dspace.Variogram(2, 60)) == repr(dspace.Variogram(2.0, 60.0))
     values = fields[:, 45, 35]
     assert values.std() == pytest.approx(math.hypot(1.5, nugget), rel=0.2) and abs(values.mean()) < 0.35
     # Normally distributed: the fourth moment of independent fields, whose scatter is sqrt(96 / n).

@@ -48,6 +48,7 @@ class Variogram:
             value = number(getattr(self, name), f"the {name}", about)
             if not (0.0 <= value < np.inf) or name == "length" and value == 0.0:
                 reject(about, f"the {name}", value, "a finite number of metres, " + ("above 0" if name == "length" else "0 or more"))
+            object.__setattr__(self, name, value)  # so that 5 and 5.0 are the same
         if self.model not in MODELS:
             reject(about, "the model", self.model, ", ".join(MODELS))
 
