@@ -38,6 +38,7 @@ std::uint64_t CutRecording(RecordingReader& reader, const std::string& out, std:
       file.CommitEach(part.data.size());
     });
     file.Commit();
+    file.Finish();
   }
   made.Keep();
   return begin;

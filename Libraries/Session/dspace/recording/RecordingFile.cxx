@@ -197,12 +197,29 @@ RecordingFile::~RecordingFile() {
   this->Close();
 }
 
+void RecordingFile::FinalizeAll() noexcept {
+  for (sqlite3_stmt** statement : {&this->Command_, &this->Snapshot_, &this->Asset_,
+                                   &this->NewAsset_, &this->Content_, &this->Meta_}) {
+    sqlite3_finalize(*statement);
+    *statement = nullptr;
+  }
+}
+
+void RecordingFile::Finish() {
+  this->Checkpoints_.reset(); // which may be at work on the log
+  this->FinalizeAll();
+  sqlite3_busy_timeout(this->Database_, 2000);
+  int inLog = 0, moved = 0;
+  if (sqlite3_wal_checkpoint_v2(this->Database_, nullptr, SQLITE_CHECKPOINT_TRUNCATE, &inLog,
+                                &moved) != SQLITE_OK ||
+      inLog > moved) {
+    this->Fail("it cannot be written");
+  }
+}
+
 void RecordingFile::Close() noexcept {
   this->Checkpoints_.reset();
-  for (sqlite3_stmt* statement : {this->Command_, this->Snapshot_, this->Asset_, this->NewAsset_,
-                                  this->Content_, this->Meta_}) {
-    sqlite3_finalize(statement);
-  }
+  this->FinalizeAll();
   if (this->Database_) {
     // Moves the log into the file even if another process has it open, as far as no read is in
     // progress. Otherwise the last process that closes the file would need write access.

@@ -86,6 +86,9 @@ public:
   // Counts the written bytes, and commits and restarts the transaction after each 64 MiB.
   void CommitEach(std::size_t bytes);
   void Rollback() noexcept;
+  // Moves the log into the file, which is then complete by itself. Throws Error(Io) where that is
+  // not possible, on a full disk for example; the destructor would not say so. Nothing may follow.
+  void Finish();
 
 private:
   void Open(int flags);
@@ -97,6 +100,7 @@ private:
   void Step(sqlite3_stmt* statement);
   [[noreturn]] void Fail(const char* what);
   void Close() noexcept;
+  void FinalizeAll() noexcept;
 
   std::string Path_;
   std::string Name_; // in messages

@@ -119,6 +119,7 @@ PackReport PackRecording(const std::string& path, const std::optional<std::strin
         report.bytes += std::uint64_t(asset.size);
       }
     }
+    file.Finish();
   }
   if (made) {
     made->Keep();

@@ -183,6 +183,7 @@ SalvageReport SalvageRecording(const std::string& path, const std::string& out,
       file.PutLost(ranges);
     }
     file.Commit();
+    file.Finish();
   }
   made.Keep();
   return report;
