@@ -65,9 +65,9 @@ std::string ToFileText(std::string text, const std::string& object, const std::s
 }
 
 std::string DeclaredEncoding(const std::string& xml) {
-  const std::size_t begin = xml.find("<?xml");
+  const std::size_t begin = xml.compare(0, 3, "\xEF\xBB\xBF") == 0 ? 3 : 0; // the mark of UTF-8
   const std::size_t end = xml.find("?>", begin);
-  if (begin == std::string::npos || begin > 3 || end == std::string::npos) { // 3: a mark of UTF-8
+  if (xml.compare(begin, 5, "<?xml") != 0 || end == std::string::npos) {
     return {};
   }
   const std::string head = xml.substr(begin, end - begin);

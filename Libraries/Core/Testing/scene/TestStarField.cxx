@@ -33,7 +33,7 @@ std::string MessageOf(const std::function<void()>& work) {
 }
 
 // Linear light of a chromaticity, of any luminance.
-Eigen::Vector3d Light(double x, double y) {
+Eigen::Vector3d LightOf(double x, double y) {
   Eigen::Matrix3d linear;
   linear << 3.2406, -1.5372, -0.4986, -0.9689, 1.8758, 0.0415, 0.0557, -0.2040, 1.0570;
   return linear * Eigen::Vector3d(x / y, 1.0, (1.0 - x - y) / y);
@@ -86,14 +86,14 @@ TEST(StarColor, TheSunIsWhiteAndOthersAreOnTheLocusOfBlackBodies) {
   }
   // Chromaticities of black bodies of 10,000 K, 5,770 K and 4,000 K (G. Wyszecki, W. Stiles,
   // "Color Science", Planckian locus).
-  const Eigen::Vector3d sun = Light(0.3265, 0.3358);
+  const Eigen::Vector3d sun = LightOf(0.3265, 0.3358);
   struct {
     double index;
     double x;
     double y;
   } const others[] = {{0.0100, 0.2807, 0.2884}, {1.3950, 0.3805, 0.3768}};
   for (const auto& other : others) {
-    Eigen::Vector3d expected = Light(other.x, other.y).cwiseQuotient(sun);
+    Eigen::Vector3d expected = LightOf(other.x, other.y).cwiseQuotient(sun);
     expected /= Eigen::Vector3d(0.2126, 0.7152, 0.0722).dot(expected);
     const auto color = StarColor(other.index);
     for (int i = 0; i < 3; ++i) {

@@ -70,7 +70,10 @@ TEST_F(ObjectCommands, UnnamedObjectsTakeTheLowestFreeNumber) {
   EXPECT_EQ(made(), "box");
   EXPECT_EQ(made(), "box 3");
   v1::Command bad; // takes no name
-  bad.mutable_create_primitive()->mutable_box()->mutable_size()->set_x(-1);
+  for (auto set : {&v1::Vector3::set_x, &v1::Vector3::set_y, &v1::Vector3::set_z}) {
+    (bad.mutable_create_primitive()->mutable_box()->mutable_size()->*set)(1.0);
+  }
+  bad.mutable_create_primitive()->mutable_object()->mutable_material()->set_opacity(2.0);
   this->Reject(bad, Kind::INVALID_ARGUMENT, "box 8");
   const FrameId frame = this->AddFrame("frame");
   EXPECT_EQ(made(frame), "box 8");
