@@ -90,7 +90,7 @@ def test_the_drawn_umbra_is_where_the_elements_have_it(t):
         elements = dark_by_elements(flat, t).reshape(SIZE, SIZE)
         cone = dark_by_cone(flat, sun, moon).reshape(SIZE, SIZE)
         assert 400 < drawn.sum() < 8000
-        assert ((lit < 1e-4 * lit.max()) ^ drawn).sum() <= 0.02 * drawn.sum() and 0.0 < np.median(lit) < 1.0  # the same shadow
+        assert ((lit < 1e-4 * lit.max()) ^ drawn).sum() <= 0.05 * drawn.sum() and 0.0 < np.median(lit) < 1.0  # the same shadow
         assert not (drawn[0].any() or drawn[-1].any() or drawn[:, 0].any() or drawn[:, -1].any())
         assert np.linalg.norm(middle(drawn) - middle(cone)) < 0.2
         assert np.linalg.norm(middle(drawn) - middle(elements)) < 1.0
