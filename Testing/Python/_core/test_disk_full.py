@@ -1,4 +1,4 @@
-"""A disk that is really full: a file system of few megabytes, with room for a part of each file, page by page. Nothing
+"""A disk that is really full: a file system of 32 MiB, with room for a part of each file, page by page. Nothing
 that existed is lost, every failure is an error that names the file, and no temporary file is left.
 
 Mounting needs the superuser, or a kernel that gives users name spaces of their own (unshare -rm). Where neither is so, the
@@ -14,7 +14,7 @@ import pytest
 
 import dspace
 
-SIZE = 6 << 20  # bytes of the disk
+SIZE = 32 << 20  # bytes of the disk
 PAGE = 4096  # bytes, in which tmpfs counts
 UNSHARE = ["unshare", "-m"] if os.geteuid() == 0 else ["unshare", "-rm"]
 MOUNT = 'mount -t tmpfs -o size=%d none "$1" && shift && exec "$@"' % SIZE
