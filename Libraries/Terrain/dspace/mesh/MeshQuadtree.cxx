@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <dspace/mesh/RowThreads.h>
+
 namespace dspace {
 
 MeshQuadtree::MeshQuadtree(const HeightGrid& grid, int top)
@@ -24,6 +26,7 @@ void MeshQuadtree::BuildLevel(int k) {
       for (int c = 0; c < level.columns; ++c) {
         const int triangles = this->Grid_.HasA(c, r) + this->Grid_.HasB(c, r);
         level.state[level.Index(c, r)] = triangles == 2 ? Full : triangles == 1 ? Mixed : Empty;
+        this->FinestTriangles_ += static_cast<std::size_t>(triangles);
       }
     return;
   }
@@ -31,8 +34,17 @@ void MeshQuadtree::BuildLevel(int k) {
   level.zone.assign(count, 0);
   level.pinned.assign(count, 0);
   level.error.assign(count, 0.0f);
+  ForRows(level.rows, level.columns << k, // each looks at all posts
+          [&](int first, int last) { this->BuildRows(k, first, last); });
+  for (const float error : level.error)
+    this->GreatestError_ = std::max(this->GreatestError_, static_cast<double>(error));
+}
+
+void MeshQuadtree::BuildRows(int k, int first, int last) {
+  const int cells = 1 << k;
+  Level& level = this->Levels_[k];
   const Level& finer = this->Levels_[k - 1];
-  for (int r = 0; r < level.rows; ++r)
+  for (int r = first; r < last; ++r)
     for (int c = 0; c < level.columns; ++c) {
       int full = 0, empty = 0;
       float error = 0.0f;
@@ -54,7 +66,6 @@ void MeshQuadtree::BuildLevel(int k) {
         error = std::max(error, std::nextafter(own, std::numeric_limits<float>::infinity()));
       }
       level.error[i] = error;
-      this->GreatestError_ = std::max(this->GreatestError_, static_cast<double>(error));
     }
 }
 

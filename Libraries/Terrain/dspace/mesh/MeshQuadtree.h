@@ -39,6 +39,8 @@ public:
   int GetRootRows() const { return this->Levels_[this->Top_].rows; }
   // Greatest error of any square; with it as tolerance only what must be split is.
   double GetGreatestError() const { return this->GreatestError_; }
+  // Triangles of the grid, which all are drawn with a tolerance of 0: errors are rounded up.
+  std::size_t GetFinestTriangles() const { return this->FinestTriangles_; }
 
   // Cells in which nothing may be decimated. Marked are the squares of 2 x 2 cells around cells
   // c0 <= c <= c1, r0 <= r <= r1 for which `touches` says so of the first cell's (c, r).
@@ -84,6 +86,7 @@ private:
   };
 
   void BuildLevel(int level);
+  void BuildRows(int level, int first, int last);
   void RefineNode(int level, int c, int r, double tolerance, bool pins);
   void Split(int level, int c, int r);
   void Require(int level, int c, int r);
@@ -94,6 +97,7 @@ private:
   int Top_;
   std::vector<Level> Levels_;
   double GreatestError_ = 0.0;
+  std::size_t FinestTriangles_ = 0;
 };
 
 } // namespace dspace

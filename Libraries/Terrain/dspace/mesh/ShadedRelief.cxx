@@ -1,9 +1,12 @@
 #include <dspace/mesh/ShadedRelief.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <dspace/Error.h>
+#include <dspace/mesh/RowThreads.h>
 
 namespace dspace {
 
@@ -52,15 +55,16 @@ DrapeImage ShadedRelief(const GridTerrain& terrain, const ShadedReliefOptions& o
   DrapeImage image;
   image.width = width;
   image.height = height;
-  image.pixels.reserve(static_cast<std::size_t>(width) * height * 3);
+  image.pixels.resize(static_cast<std::size_t>(width) * height * 3);
   const auto post = [](int pixel, int pixels, int posts) {
     return std::min(static_cast<int>((pixel + 0.5) * posts / pixels), posts - 1);
   };
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const int c = post(x, width, grid.GetColumns()), r = post(y, height, grid.GetRows());
+  const auto row = [&](int y, std::uint8_t* pixel) {
+    const int r = post(y, height, grid.GetRows());
+    for (int x = 0; x < width; ++x, pixel += 3) {
+      const int c = post(x, width, grid.GetColumns());
       if (!grid.HasPost(c, r)) {
-        image.pixels.insert(image.pixels.end(), options.holeColor.begin(), options.holeColor.end());
+        std::copy(options.holeColor.begin(), options.holeColor.end(), pixel);
         continue;
       }
       Eigen::Vector3d n = grid.PostNormal(c, r);
@@ -68,9 +72,15 @@ DrapeImage ShadedRelief(const GridTerrain& terrain, const ShadedReliefOptions& o
       const double lambert = std::max(0.0, n.normalized().dot(sun));
       const double light = options.ambient + (1.0 - options.ambient) * lambert;
       const double where = high > low ? (grid.At(c, r) - low) / (high - low) : 0.0;
-      for (double v : ColorAt(options.ramp, where))
-        image.pixels.push_back(static_cast<std::uint8_t>(std::lround(255.0 * v * light)));
+      const std::array<double, 3> color = ColorAt(options.ramp, where);
+      for (int k = 0; k < 3; ++k)
+        pixel[k] = static_cast<std::uint8_t>(255.0 * color[k] * light + 0.5); // rounded
     }
+  };
+  ForRows(height, width, [&](int first, int last) {
+    for (int y = first; y < last; ++y)
+      row(y, image.pixels.data() + static_cast<std::size_t>(y) * width * 3);
+  });
   return image;
 }
 

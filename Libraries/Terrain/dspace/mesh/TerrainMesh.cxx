@@ -88,7 +88,8 @@ double TerrainMesh::ToleranceFor(std::size_t budget) {
   };
   const double wanted = static_cast<double>(budget);
   double low = 0.0, high = this->Tree_.GetGreatestError();
-  double most = count(low), least = count(high);
+  auto most = static_cast<double>(this->Tree_.GetFinestTriangles());
+  double least = count(high);
   if (most <= wanted)
     return low;
   // Counts fall nearly as a power of the tolerance, and jump where many squares have the same
