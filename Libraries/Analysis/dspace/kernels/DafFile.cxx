@@ -90,7 +90,8 @@ DafFile::DafFile(const std::string& path) : Path_(path), Blocks_(std::make_uniqu
   char record[RecordSize];
   if (this->Size_ < RecordSize) {
     this->Damaged("the file has " + std::to_string(this->Size_) +
-                  " bytes; accepted: a binary kernel of SPICE, which begins with 1024");
+                  " bytes, and is neither text that begins with KPL/ nor a binary kernel of SPICE, "
+                  "which begins with 1024");
   }
   this->ReadBytes(0, record, sizeof(record));
   const std::string word = Trimmed(record, 8);

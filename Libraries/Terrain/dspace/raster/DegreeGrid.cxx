@@ -136,7 +136,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
     Reject(
         info, Error::Kind::Unsupported,
         std::string(rotated ? "its pixels are rotated or sheared" : "its rows run to the north") +
-            " against longitude and latitude; " + Accepted);
+            " against longitude and latitude (gdalwarp writes a north-up copy); " + Accepted);
   }
 
   const double step = std::abs(grid.step_deg.x());
