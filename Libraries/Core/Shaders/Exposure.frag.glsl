@@ -5,13 +5,10 @@
 uniform sampler2D source;
 uniform sampler2D depths;
 uniform float exposure;
+uniform int filmic; // 1: the filmic curve
 layout(location = 0) out vec4 fragColor;
 
-// K. Narkowicz, "ACES Filmic Tone Mapping Curve" (2015).
-vec3 filmic(vec3 x)
-{
-  return (x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.14);
-}
+//DSPACE::Tone
 
 void main()
 {
@@ -19,10 +16,7 @@ void main()
   vec4 light = texelFetch(source, texel, 0);
   if (light.a > 0.0)
   {
-    light.rgb = clamp(light.rgb * exposure, 0.0, 1e6);
-#ifdef DSPACE_FILMIC
-    light.rgb = filmic(light.rgb);
-#endif
+    light.rgb = tonedLight(light.rgb, exposure, filmic != 0);
   }
   fragColor = vec4(light.rgb, 1.0);
   gl_FragDepth = texelFetch(depths, texel, 0).r;

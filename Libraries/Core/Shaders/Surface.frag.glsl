@@ -37,6 +37,14 @@ uniform sampler2D colorTexture;
 // Functions of a geometry's own, mixedColor() and layeredNormal() among them.
 //DSPACE::Functions
 
+#ifdef DSPACE_UNSHADED
+// The factor, and 1 for the filmic curve, by which light becomes a display value; 0, 0: not known
+// before the picture is drawn, or the lights have it.
+uniform vec2 lightExposure;
+
+//DSPACE::Tone
+#endif
+
 #ifdef DSPACE_NORMAL_MAP
 uniform sampler2D normalTexture; // tangent space: 0.5 + 0.5 n, X along u, Y along v
 uniform float normalScale;
@@ -145,8 +153,15 @@ void main()
   float exposed = 1.0;
 #if defined(DSPACE_UNSHADED) && defined(DSPACE_MIXED) && !defined(DSPACE_ANGLES)
   vec4 styled = unshadedColor(color.rgb);
-  color.rgb = styled.rgb;
   exposed = step(1e-6, styled.a);
+#ifndef DSPACE_DISPLAY_COLOR
+  if (lightExposure.x > 0.0 && styled.a < 1.0)
+  {
+    styled = unshadedColor(tonedLight(color.rgb, lightExposure.x, lightExposure.y > 0.0));
+    exposed = 0.0; // is done
+  }
+#endif
+  color.rgb = styled.rgb;
 #endif
 
 #ifdef DSPACE_PEEL

@@ -110,14 +110,25 @@ void ColorPicture::DrawScene(const DrawView& view, const Request& request) {
     this->Exposure_ = std::make_unique<ExposurePass>(hub);
   }
   RenderTarget& light = this->Exposure_->Target(drawn.Width(), drawn.Height());
-  vtkOpenGLState* state = hub->GetState();
-  state->PushFramebufferBindings();
-  light.Bind();
-  this->Drawer_->ClearLight(request.background);
-  this->Drawer_->DrawColor(this->List_, view, light, request.samples, &request.background);
-  state->PopFramebufferBindings();
-  this->Exposure_->Resolve(view.look, drawn);
-  this->UsedExposure_ = this->Exposure_->Exposure();
+  DrawView exposed = view;
+  const auto draw = [&] {
+    vtkOpenGLState* state = hub->GetState();
+    state->PushFramebufferBindings();
+    light.Bind();
+    this->Drawer_->ClearLight(request.background);
+    this->Drawer_->DrawColor(this->List_, exposed, light, request.samples, &request.background);
+    state->PopFramebufferBindings();
+  };
+  if (!view.look.automaticExposure) {
+    exposed.exposure = view.look.exposure;
+  }
+  draw();
+  this->UsedExposure_ = this->Exposure_->FactorFor(view.look);
+  if (!exposed.exposure && this->Drawer_->MixesDisplayColors(this->List_, view, request.samples)) {
+    exposed.exposure = this->UsedExposure_;
+    draw();
+  }
+  this->Exposure_->Resolve(view.look.tone, this->UsedExposure_, drawn);
 }
 
 void ColorPicture::Draw(const std::string& object, const Scene& scene, const Request& request) {

@@ -51,6 +51,9 @@ public:
   // Prepare().
   virtual std::vector<LightHull> Hulls(const CustomDrawing& drawing);
   virtual void DrawColor(const CustomDrawing& drawing) = 0;
+  // Whether DrawColor() lays display values that let light through over what it lights. It needs
+  // `drawing.view.exposure` to expose the light alone. After Prepare().
+  virtual bool MixesDisplayColors(const CustomDrawing&) { return false; }
   // Also into the Sun's shadow maps: `drawing.view.clip` is then set, and no label is kept.
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
   // Photometric angles of what is lit, 0 where they are not known, as Photometry.glsl has them

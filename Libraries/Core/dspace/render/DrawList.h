@@ -122,6 +122,9 @@ struct DrawView {
   // for an interactive one, which shows what is loaded.
   bool complete = false;
   ViewLook look;
+  // The factor on linear light, where it is known before the picture is drawn and the lights do not
+  // have it (ExposedByLights).
+  std::optional<double> exposure;
   // Clip from view coordinates in place of the projection's, for pictures that a light sees: levels
   // and poses remain those of the camera.
   std::optional<Eigen::Matrix4d> clip;

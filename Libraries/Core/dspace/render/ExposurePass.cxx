@@ -80,9 +80,12 @@ double ExposurePass::Metered() {
   return Shown / double(*at);
 }
 
-void ExposurePass::Resolve(const ViewLook& look, RenderTarget& target) {
+double ExposurePass::FactorFor(const ViewLook& look) {
+  return look.exposure * (look.automaticExposure ? this->Metered() : 1.0);
+}
+
+void ExposurePass::Resolve(ToneCurve tone, double factor, RenderTarget& target) {
   vtkOpenGLState* state = this->Window_->GetState();
-  this->Exposure_ = look.exposure * (look.automaticExposure ? this->Metered() : 1.0);
   state->PushFramebufferBindings();
   target.Bind();
   glEnable(GL_FRAMEBUFFER_SRGB);
@@ -93,11 +96,11 @@ void ExposurePass::Resolve(const ViewLook& look, RenderTarget& target) {
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, this->Light_.Color());
   BindTextureUnit(this->Window_, OpaqueDepthUnit, GL_TEXTURE_2D, this->Light_.Depth());
-  const char* defines = look.tone == ToneCurve::Filmic ? "#define DSPACE_FILMIC\n" : "";
-  vtkShaderProgram* program = this->Shaders_.Screen(Exposure_frag, defines);
+  vtkShaderProgram* program = this->Shaders_.Screen(Exposure_frag);
   program->SetUniformi("source", ColorUnit);
   program->SetUniformi("depths", OpaqueDepthUnit);
-  program->SetUniformf("exposure", float(std::min(this->Exposure_, 1e30)));
+  program->SetUniformf("exposure", float(std::min(factor, 1e30)));
+  program->SetUniformi("filmic", tone == ToneCurve::Filmic ? 1 : 0);
   this->DrawTriangleOverScreen();
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   state->vtkglDepthFunc(GL_LEQUAL);

@@ -21,10 +21,10 @@ public:
   // What the scene is drawn into (Light, with depth), of this size. Alpha is 0 where display values
   // are. Throws what RenderTarget::Resize throws.
   RenderTarget& Target(int width, int height);
+  // The factor on the light that Target() has; an automatic exposure is found there.
+  double FactorFor(const ViewLook& look);
   // From Target() into `target` (Display, with depth, of its size), colours and depth.
-  void Resolve(const ViewLook& look, RenderTarget& target);
-  // The factor of the last Resolve().
-  double Exposure() const { return this->Exposure_; }
+  void Resolve(ToneCurve tone, double factor, RenderTarget& target);
 
 private:
   double Metered();
@@ -35,7 +35,6 @@ private:
   RenderTarget Light_;
   RenderTarget Luminances_;
   unsigned int EmptyArray_ = 0;
-  double Exposure_ = 1.0;
 };
 
 } // namespace dspace

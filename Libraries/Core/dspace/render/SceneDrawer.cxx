@@ -475,6 +475,13 @@ void SceneDrawer::DrawLitMask(const DrawList& list, const DrawView& view,
   this->Masked_ = true;
 }
 
+bool SceneDrawer::MixesDisplayColors(const DrawList& list, const DrawView& view, int samples) {
+  return std::any_of(list.Customs().begin(), list.Customs().end(), [&](const DrawCustom& object) {
+    return this->Customs_[object.object->custom.get()].drawer->MixesDisplayColors(
+        this->Drawing(object, list, view, samples));
+  });
+}
+
 void SceneDrawer::DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target,
                             int samples, const Background* background) {
   vtkOpenGLState* state = this->Window_->GetState();

@@ -52,6 +52,8 @@ public:
   // Prepare(), before any target is bound. Returns false if some data of what is outside the
   // picture, and may throw a shadow into it, is not loaded yet.
   bool DrawShadows(const Scene& scene, const DrawList& list, DrawView& view, int samples);
+  // Whether DrawColor() needs `view.exposure`; after Prepare().
+  bool MixesDisplayColors(const DrawList& list, const DrawView& view, int samples);
   // `samples` is the supersampling factor: lines, points and billboards scale with it.
   void DrawColor(const DrawList& list, const DrawView& view, RenderTarget& target, int samples,
                  const Background* background = nullptr);

@@ -17,6 +17,7 @@
 #include "Shadow.h"
 #include "SunMask_frag.h"
 #include "Surface_frag.h"
+#include "Tone.h"
 
 #include "vtkDspaceHubWindow.h"
 #include "vtkOpenGLShaderCache.h"
@@ -195,6 +196,7 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(Features features, const Shad
   Replace(made.fragment, "//DSPACE::Lighting",
           std::string(Shadow) + Photometry + Eclipse + Lighting);
   Replace(made.fragment, "//DSPACE::Peeling", DepthPeel);
+  Replace(made.fragment, "//DSPACE::Tone", Tone);
   return made;
 }
 
@@ -233,7 +235,9 @@ vtkShaderProgram* SurfaceShaders::Screen(const char* fragment, const std::string
   if (program) {
     this->Window_->GetShaderCache()->ReadyShaderProgram(program);
   } else {
-    program = Ready(this->Window_, WithDefines(Screen_vert, ""), WithDefines(fragment, defines));
+    std::string text = WithDefines(fragment, defines);
+    Replace(text, "//DSPACE::Tone", Tone);
+    program = Ready(this->Window_, WithDefines(Screen_vert, ""), text);
   }
   return program;
 }

@@ -28,8 +28,9 @@ enum class ToneCurve { Linear, Filmic };
 // (emissive). Display colours stay as they are: the background, unlit objects with most ornaments
 // among them, overlays, and props of VTK, which VTK shades by its own rules: those of a renderer
 // never follow the exposure, those of a scene follow a fixed one with the linear curve, which
-// multiplies their lights. Translucent surfaces are treated as what is opaque behind them. Each
-// sample is exposed on its own.
+// multiplies their lights. Translucent surfaces are treated as what is opaque behind them.
+// False colour that lets lit ground through is laid over it once that is exposed. Each sample is
+// exposed on its own.
 struct ViewLook {
   ShadowLook shadows;
   // White light from all directions, for the eye: a fraction of the Sun's, 0 to 1. Physical

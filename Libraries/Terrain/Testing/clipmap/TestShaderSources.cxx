@@ -342,9 +342,12 @@ void Programs::AddScreens() {
     EXPECT_EQ(text.rfind("#version 330 core\n" + marker, 0), 0u) << name;
     const std::string numbers = "#define DSPACE_SAMPLES 3\n#define DSPACE_GRID 256\n"
                                 "#define DSPACE_ALPHA 0.0\n";
-    for (const char* more :
-         {"", "#define DSPACE_FILMIC\n", "#define DSPACE_OVER\n", "#define DSPACE_UNKNOWN\n"}) {
+    for (const char* more : {"", "#define DSPACE_OVER\n", "#define DSPACE_UNKNOWN\n"}) {
       std::string with = text;
+      const std::string tone = "//DSPACE::Tone";
+      if (with.find(tone) != std::string::npos) {
+        with.replace(with.find(tone), tone.size(), TextOf(folder / "Tone.glsl"));
+      }
       with.replace(with.find(marker), marker.size(), numbers + more);
       if (*more && text.find(std::string(more, 8, std::strlen(more) - 9)) == std::string::npos) {
         continue;

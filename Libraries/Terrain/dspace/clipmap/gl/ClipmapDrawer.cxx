@@ -347,6 +347,12 @@ double ClipmapDrawer::NearestDepth(const CustomDrawing& drawing) {
   return 0.5 * std::abs(camera.posts.z() - ground) * scale;
 }
 
+bool ClipmapDrawer::MixesDisplayColors(const CustomDrawing& drawing) {
+  const std::optional<ClipmapStyle::Ramp>& ramp = this->Style_.ramp;
+  return ramp && !ramp->shaded && ramp->opacity > 0.0 && ramp->opacity < 1.0 &&
+         this->IsLit(drawing);
+}
+
 void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
   const GraphicsObject& object = *drawing.object.object;
   const Material& material = *this->Terrain_->Options().material;
@@ -514,6 +520,12 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
     BindTextureUnit(drawing.window, HorizonUnit, GL_TEXTURE_2D_ARRAY, chart.horizonTexture);
     program->SetUniformi("horizons", HorizonUnit);
     program->SetUniformf("horizonRadius", float(drawing.list.Sun()->radius));
+  }
+  if (program->IsUniformUsed("lightExposure")) {
+    const DrawView& view = drawing.view;
+    const bool filmic = view.exposure && view.look.tone == ToneCurve::Filmic;
+    const float exposure[2] = {float(view.exposure.value_or(0.0)), filmic ? 1.0f : 0.0f};
+    program->SetUniform2f("lightExposure", exposure);
   }
   if (program->IsUniformUsed("ownGround")) {
     program->SetUniformi("ownGround", ownGround);

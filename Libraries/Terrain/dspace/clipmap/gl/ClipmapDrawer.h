@@ -34,6 +34,7 @@ public:
   bool ShadowsItself(const CustomDrawing& drawing) override;
   std::vector<LightHull> Hulls(const CustomDrawing& drawing) override;
   void DrawColor(const CustomDrawing& drawing) override;
+  bool MixesDisplayColors(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
   bool DrawAngles(const CustomDrawing& drawing) override;
   std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
