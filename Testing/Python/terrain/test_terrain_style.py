@@ -65,6 +65,7 @@ def test_false_colour_has_the_colours_of_its_legend_whatever_the_light(scene, tm
     linear = lambda c: np.where(c / 255 <= 0.04045, c / 255 / 12.92, ((c / 255 + 0.055) / 1.055) ** 2.4)
     np.testing.assert_allclose(linear(half), 0.5 * linear(expected) + 0.5 * linear(ground_alone), atol=0.02)
     # Nor is it exposed: only the ground below is, which has one shade.
+    scene.sun.set(azimuth_deg=90, elevation_deg=60, terrain=ground)
     for exposed in ({"exposure": 0.5, "tone": "filmic"}, {"exposure": 0.2, "automatic_exposure": True}):
         view.set(**exposed)
         ground.set_style(**{**look, "opacity": 0.5})

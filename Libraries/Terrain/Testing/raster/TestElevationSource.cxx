@@ -210,7 +210,7 @@ TEST_F(Raster, ValuesThatLookLikeNoDataAreReported) {
     for (const std::string& warning : terrain->GetWarnings()) {
       const std::size_t at = warning.find("state no_data=");
       if (at != std::string::npos)
-        return warning.substr(at + 13);
+        return warning.substr(at + 14);
     }
     return std::string();
   };
