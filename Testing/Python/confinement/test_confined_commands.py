@@ -149,6 +149,16 @@ def test_a_kernel_without_landlock_gets_a_shorter_list_of_formats(tmp_path, monk
         assert opened == accepted
 
 
+def test_an_installed_script_is_confined(tmp_path):
+    """Which executes itself again, wherever it lies."""
+    (tmp_path / "bin").mkdir()
+    script = tmp_path / "bin" / "dspace"
+    script.write_text("import sys\nfrom dspace.command_line import main\nsys.exit(main())\n")
+    done = subprocess.run([sys.executable, str(script), "serve", "--listen", "nonsense"], capture_output=True, text=True,
+                          cwd=pathlib.Path("/usr"))
+    assert done.returncode == 1 and "address 'nonsense'" in done.stderr, done.stderr
+
+
 def test_a_missing_launcher_is_an_error(tmp_path):
     """Nothing runs unconfined by accident."""
     script = ("import sys\nfrom dspace.command_line import confinement, main\nconfinement._package = lambda: '/nowhere/a/b/c/d'\n"

@@ -99,6 +99,7 @@ def _package_places():
     for depth in ("*", os.path.join("*", "*")):
         yield from filter(os.path.islink, glob.glob(os.path.join(glob.escape(package), depth)))
     yield from (sys.prefix, sys.base_prefix)
+    yield sys.argv[0]  # the script of an installation
     yield from (place for place in sys.path if os.path.basename(place) in ("dist-packages", "site-packages"))
 
 
