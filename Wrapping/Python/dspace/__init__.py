@@ -22,7 +22,8 @@ import importlib
 
 _HOMES = {
     "Assembly": "objects.assemblies",
-    "Camera": "cameras.camera", "CameraModel": "cameras.model", "Sensor": "cameras.sensor", "Vantage": "cameras.vantage",
+    "Camera": "cameras.camera", "CameraModel": "cameras.model",
+    "ImageState": "cameras.image_planes", "Sensor": "cameras.sensor", "Vantage": "cameras.vantage",
     "Error": "errors", "InvalidArgument": "errors", "WrongType": "errors", "NotFound": "errors",
     "AlreadyExists": "errors", "Unsupported": "errors", "Unimplemented": "errors", "Corrupt": "errors", "Io": "errors",
     "Resource": "errors", "DeadlineExceeded": "errors", "Internal": "errors",

@@ -4,8 +4,9 @@ from typing import NamedTuple
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, integer, items, put, put_given, reject
+from dspace._core.fields import array_of, flag, integer, items, put, put_given, reject
 from dspace._core.signals import check_signals
+from dspace.cameras.image_planes import ImageState, ground_of, image_state, motion_of, points_of
 from dspace.cameras.model import put_model
 from dspace.errors import WrongType
 
@@ -50,8 +51,8 @@ class SceneImages:
 
     def simulate_image(self, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, color=True,
                        radiance=False, depth=False, range=False, label=False, lit_fraction=False, incidence=False,
-                       emission=False, phase=False, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE,
-                       progress=None):
+                       emission=False, phase=False, point=False, ground=None, geographic=None, motion=None,
+                       samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
         """The image that a camera with a lens takes: a dict of planes (h, w, ...), row 0 on top, and "lens", a
         LensPicture.
 
@@ -60,6 +61,11 @@ class SceneImages:
         rover's body. size: (width, height), needed where the model has none; another size than the model's is rejected
         unless scale=True. Planes: as Viewport.capture, of physical objects; "color" is the sRGB of the radiance times
         `exposure`, 1 at 1361 / pi W/m^2/sr (white in full Sun); "range" is from the pixel's own entrance pupil.
+        Planes of doubles, from the range along the pixel's own ray: "point" (h, w, 3) in the root [m]; "ground" (h, w, 3): map x, y and height of a Terrain, given as
+        ground=terrain; "geographic" (h, w, 3): longitude, latitude [deg] and height, geographic=terrain. Heights are above the
+        terrain's vertical datum. "motion" (h, w, 2): where the pixel's surface is in a state, given as motion=image_state()
+        at another time, less where it is now [pixels], by the motion of camera and objects; NaN: not seen, or nothing there.
+        Joints inside one object do not count. NaN where there is nothing.
         ornaments=True: labels, depths and angles also of ornaments. Pixels that the lens has no ray for are black, 0,
         +infinity or NaN. samples: n x n per pixel of the source views, 1 to 8. hide: fragments left out.
 
@@ -76,6 +82,16 @@ class SceneImages:
             reject(about, "progress", progress, "a function of one number", WrongType)
         wanted = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
                       incidence=incidence, emission=emission, phase=phase)
+        terrains = {"ground": ground, "geographic": geographic}
+        for name, terrain in terrains.items():
+            if terrain is not None and not (hasattr(terrain, "to_map") and hasattr(terrain, "locate")):
+                reject(about, name, terrain, "a dspace.Terrain", WrongType)
+        if motion is not None and not (isinstance(motion, ImageState) and motion._scene._name_ == self._scene._name_):
+            reject(about, "motion", motion, "an ImageState of this scene", WrongType)
+        derived = flag(point, "point", about) or motion is not None or ground is not None or geographic is not None
+        sought = {name for name, asked in wanted.items() if asked}
+        wanted["range"] = flag(range, "range", about) or derived
+        wanted["label"] = flag(label, "label", about) or motion is not None
         command = self._scene._command()
         message = command.simulate_image
         self._put_camera(message.camera, model, camera, vantage, frame, size, scale, about)
@@ -110,6 +126,18 @@ class SceneImages:
             if y >= height:
                 break
             check_signals()
+        if derived:
+            points = points_of(self, planes, (model, camera, vantage, frame, size, scale))
+            if point:
+                planes["point"] = points
+            for name, terrain in terrains.items():
+                if terrain is not None:
+                    planes[name] = ground_of(terrain, points, name == "geographic")
+            if motion is not None:
+                planes["motion"] = motion_of(self._scene, planes, points, motion)
+            for name in ("range", "label"):
+                if name not in sought:
+                    planes.pop(name, None)
         planes["lens"] = LensPicture(int(counts[0]), int(counts[1]), int(counts[2]), first.half_angle_deg,
                                      first.pupil_shift, pupil, int(counts[3]))
         return planes
@@ -121,6 +149,15 @@ class SceneImages:
             return np.frombuffer(plane.data, kind).reshape(shape)
         from vtkmodules.util.numpy_support import vtk_to_numpy
         return vtk_to_numpy(self._scene._client.vtk.GetPlane(plane.name)).reshape(shape)
+
+    def image_state(self, model, camera=None, vantage=None, frame=None, size=None, scale=False):
+        """Where the camera and all objects are now: an ImageState, for the plane "motion" of pictures at another time. The
+        camera is given as for simulate_image(), with a model.
+
+            before = scene.image_state(model, frame=body)
+            ...                                                       # the simulation's next step
+            planes = scene.simulate_image(model, frame=body, motion=before)"""
+        return image_state(self, model, camera, vantage, frame, size, scale, "image state")
 
     def project_points(self, points, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, points_in=None):
         """Pixels (..., 2) of points (..., 3) [m] in the frame `points_in` (default: the root); NaN where the lens sees

@@ -6,7 +6,7 @@ import sys
 
 from dspace.command_line import Failed
 
-PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase")
+PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase", "point")
 
 
 def add_arguments(parser):
@@ -73,7 +73,7 @@ def add_arguments(parser):
 
 def add_model(parser):
     parser.add_argument("model", metavar="MODEL", help="a file of camera models: JSON, JPL's CAHV(OR(E)) text, a PDS3 or "
-                        "VICAR label, OpenCV's YAML, mrcal's .cameramodel")
+                        "VICAR label, OpenCV's YAML, mrcal's .cameramodel, a USGS ISD, a SPICE instrument kernel")
     parser.add_argument("--camera", metavar="NAME", help="the camera of this name, where the file has several")
     parser.add_argument("--size", type=size, metavar="WxH", help="the size of its image, where the file does not say")
 

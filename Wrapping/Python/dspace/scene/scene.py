@@ -12,6 +12,7 @@ from dspace.cameras.vantage import Vantage
 from dspace.errors import AlreadyExists, InvalidArgument, WrongType
 from dspace.frames.frame import Frame, put_ids, put_pose
 from dspace.frames.poses import to_pose
+from dspace.measure.lens_ornaments import LensOrnaments
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
 from dspace.measure.sights import Sights
@@ -214,6 +215,7 @@ class Scene(Strict):
         return ReferenceFrames(self)
 
     simulate_image = delegate(SceneImages, "simulate_image")
+    image_state = delegate(SceneImages, "image_state")
     project_points = delegate(SceneImages, "project_points")
     pixel_rays = delegate(SceneImages, "pixel_rays")
 
@@ -290,6 +292,7 @@ class Scene(Strict):
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
     lit_area = delegate(Lit, "lit_area")
+    add_lens_frustum = delegate(LensOrnaments, "add_lens_frustum")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
     power_profile = delegate(Visibility, "power_profile")
