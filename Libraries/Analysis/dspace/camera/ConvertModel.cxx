@@ -195,6 +195,9 @@ ConvertedModel ConvertModel(const CameraModel& from, const std::string& type) {
   if (std::string(from.lens->Type()) == "orthographic" && type != "orthographic") {
     throw Error(Error::Kind::Unsupported, label, "its rays are parallel; accepted: another model");
   }
+  if (std::string(from.lens->Type()) == "line_scan" && type != "line_scan") {
+    throw Error(Error::Kind::Unsupported, label, "its row moves; accepted: another model");
+  }
   if (type == from.lens->Type()) {
     to.covered = 1.0;
     return to;

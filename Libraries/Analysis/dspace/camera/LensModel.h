@@ -27,7 +27,7 @@ struct LensField {
   // more on some sides.
   double limit_deg = 180.0;
   // What ends the field: "" (nothing: all directions), "the plane of the lens", "a fold" (farther
-  // out the image would turn back), "the end of the model", "parallel rays".
+  // out the image would turn back), "the end of the model", "parallel rays", "a row that moves".
   std::string end;
 };
 
@@ -72,6 +72,8 @@ using LensPtr = std::shared_ptr<const LensModel>;
 // - ucm: focal, center, alpha; eucm: also beta; double_sphere: focal, center, xi, alpha
 // - owen: focal_length (1, millimetres), matrix (4: kx, kxy, kyx, ky, pixels per millimetre),
 //   center, [radial (1 to 2)], [tangential (2: y, x)], [pinwheel (1 to 2)]
+// - usgs: focal_length, matrix, center, [radial (1 to 3)]
+// - line_scan: as usgs, and row (1), line (n, 2 to 1024), positions (3 n), rotations (4 n)
 // - orthographic: scale (2, pixels per metre), center
 // - cahv: A, H, V (3 each); cahvor: also O, R; cahvore: also E, linearity (1)
 LensPtr MakeLens(const std::string& type, const LensValues& values, const std::string& label);

@@ -44,6 +44,19 @@ std::vector<double> LensNumbers::UpTo(const std::string& name, std::size_t least
   return numbers;
 }
 
+std::vector<double> LensNumbers::Rows(const std::string& name, std::size_t columns,
+                                      std::size_t least, std::size_t most) {
+  const auto found = this->Values_.find(name);
+  const std::size_t given = found == this->Values_.end() ? 0 : found->second.size();
+  if (given % columns != 0 || given < least * columns || given > most * columns) {
+    Reject(this->Label_, "'" + name + "' has " + std::to_string(given) +
+                             " numbers; accepted: " + std::to_string(least) + " to " +
+                             std::to_string(most) + " times " + std::to_string(columns));
+  }
+  this->Taken_.insert(name);
+  return found->second;
+}
+
 double LensNumbers::One(const std::string& name) {
   return this->Exactly(name, 1)[0];
 }

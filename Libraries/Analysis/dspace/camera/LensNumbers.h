@@ -23,6 +23,9 @@ public:
   Eigen::Vector3d Three(const std::string& name);
   // `least` to `most` numbers, followed by zeros up to `most`; none: zeros.
   std::vector<double> UpTo(const std::string& name, std::size_t least, std::size_t most);
+  // Rows of `columns` numbers each, `least` to `most` rows.
+  std::vector<double> Rows(const std::string& name, std::size_t columns, std::size_t least,
+                           std::size_t most);
   std::vector<double> Exactly(const std::string& name, std::size_t count);
   // Throws Error(InvalidArgument) where a number was not taken.
   void Finish() const;

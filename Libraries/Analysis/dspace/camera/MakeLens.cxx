@@ -1,9 +1,11 @@
 #include <dspace/camera/AngleLens.h>
 #include <dspace/camera/BrownLens.h>
 #include <dspace/camera/CahvoreLens.h>
+#include <dspace/camera/LineScanLens.h>
 #include <dspace/camera/OrthographicLens.h>
 #include <dspace/camera/OwenLens.h>
 #include <dspace/camera/SphereLens.h>
+#include <dspace/camera/UsgsLens.h>
 
 #include <functional>
 
@@ -27,6 +29,8 @@ const std::map<std::string, Maker>& Makers() {
       {"double_sphere",
        [](LensNumbers& n) { return std::make_shared<SphereLens>(SphereLens::Kind::Double, n); }},
       {"owen", [](LensNumbers& n) { return std::make_shared<OwenLens>(n); }},
+      {"usgs", [](LensNumbers& n) { return std::make_shared<UsgsLens>(n); }},
+      {"line_scan", [](LensNumbers& n) { return std::make_shared<LineScanLens>(n); }},
       {"orthographic", [](LensNumbers& n) { return std::make_shared<OrthographicLens>(n); }},
       {"cahv",
        [](LensNumbers& n) { return std::make_shared<CahvoreLens>(CahvoreLens::Kind::Cahv, n); }},

@@ -7,9 +7,8 @@
 #include <dspace/Checks.h>
 
 namespace dspace {
-namespace {
 
-Eigen::Matrix2d TakeMatrix(LensNumbers& numbers) {
+Eigen::Matrix2d TakeFocalMatrix(LensNumbers& numbers) {
   const std::vector<double> k = numbers.Exactly("matrix", 4);
   Eigen::Matrix2d matrix;
   matrix << k[0], k[1], k[2], k[3];
@@ -19,12 +18,10 @@ Eigen::Matrix2d TakeMatrix(LensNumbers& numbers) {
   return matrix;
 }
 
-} // namespace
-
 OwenLens::OwenLens(LensNumbers& numbers)
-    : PlaneLens(TakeMatrix(numbers), numbers.Two("center")), Focal_(numbers.One("focal_length")),
-      Radial_(numbers.UpTo("radial", 1, 2)), Tangential_(numbers.UpTo("tangential", 2, 2)),
-      Pinwheel_(numbers.UpTo("pinwheel", 1, 2)) {
+    : PlaneLens(TakeFocalMatrix(numbers), numbers.Two("center")),
+      Focal_(numbers.One("focal_length")), Radial_(numbers.UpTo("radial", 1, 2)),
+      Tangential_(numbers.UpTo("tangential", 2, 2)), Pinwheel_(numbers.UpTo("pinwheel", 1, 2)) {
   Require(this->Focal_ >= 1e-3, numbers.Label(), "the focal length", this->Focal_,
           "1e-3 mm and more");
   numbers.Finish();

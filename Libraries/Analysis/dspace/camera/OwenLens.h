@@ -7,6 +7,10 @@
 
 namespace dspace {
 
+// The numbers "matrix" of a lens with a focal plane, by rows [pixels per millimetre]. Throws
+// Error(InvalidArgument) for a singular one.
+Eigen::Matrix2d TakeFocalMatrix(LensNumbers& numbers);
+
 // Type "owen". In the focal plane, (x, y) = f (X / Z, Y / Z) [mm], r² = x² + y²:
 //   (x, y)' = (x, y) + (a r² + b r⁴ + c y + d x) (x, y) + (e r + g r³) (-y, x)
 //   pixel = [kx kxy; kyx ky] (x, y)' + center

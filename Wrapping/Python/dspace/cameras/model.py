@@ -133,7 +133,8 @@ class CameraModel(Strict):
     @classmethod
     def read_all(cls, path):
         """All models of a file, in its order. Formats: JSON, JPL's CAHV, CAHVOR and CAHVORE text, PDS3 and VICAR labels
-        (GEOMETRIC_CAMERA_MODEL), OpenCV's and ROS's YAML, mrcal's .cameramodel; the content decides.
+        (GEOMETRIC_CAMERA_MODEL), OpenCV's and ROS's YAML, mrcal's .cameramodel, USGS ISD, SPICE instrument kernels; the content
+        decides.
 
         Raises dspace.NotFound, dspace.Io, dspace.Corrupt, dspace.Unsupported, dspace.InvalidArgument."""
         path = file_path(path, "the path", "camera model")

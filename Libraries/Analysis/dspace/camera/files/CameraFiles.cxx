@@ -6,6 +6,8 @@
 #include <dspace/Error.h>
 #include <dspace/camera/files/CahvText.h>
 #include <dspace/camera/files/CameraJson.h>
+#include <dspace/camera/files/InstrumentKernel.h>
+#include <dspace/camera/files/IsdJson.h>
 #include <dspace/camera/files/LabelModel.h>
 #include <dspace/camera/files/ModelText.h>
 #include <dspace/camera/files/MrcalModel.h>
@@ -24,10 +26,16 @@ std::vector<CameraModel> ReadCameraModels(const std::string& path) {
     throw Error(
         Error::Kind::Unsupported, label,
         "it is no text; accepted: JSON, JPL's CAHV, CAHVOR and CAHVORE text, PDS3 and VICAR "
-        "labels, OpenCV's YAML, mrcal's .cameramodel");
+        "labels, OpenCV's YAML, mrcal's .cameramodel, USGS ISD, SPICE instrument kernels");
   }
   if (IsMrcalModel(text)) {
     return {ParseMrcalModel(text, label)};
+  }
+  if (IsInstrumentKernel(text)) {
+    return ParseInstrumentKernel(text, label);
+  }
+  if (IsIsdJson(text)) {
+    return {ParseIsdJson(text, label)};
   }
   if (text[first] == '{' || text[first] == '[') {
     return ParseCameraJson(text, label);
@@ -40,7 +48,8 @@ std::vector<CameraModel> ReadCameraModels(const std::string& path) {
   }
   throw Error(Error::Kind::Unsupported, label,
               "it holds no camera model; accepted: JSON, JPL's CAHV, CAHVOR and CAHVORE text, PDS3 "
-              "and VICAR labels, OpenCV's YAML, mrcal's .cameramodel");
+              "and VICAR labels, OpenCV's YAML, mrcal's .cameramodel, USGS ISD, SPICE instrument "
+              "kernels");
 }
 
 CameraModel ReadCameraModel(const std::string& path, const std::string& name) {

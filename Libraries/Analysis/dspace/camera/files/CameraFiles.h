@@ -15,6 +15,8 @@ namespace dspace {
 // - PDS3 and VICAR labels: the group or property GEOMETRIC_CAMERA_MODEL
 // - OpenCV's and ROS's YAML: camera_matrix, distortion_coefficients
 // - mrcal's .cameramodel
+// - ISD of the USGS (JSON): radial frame cameras and line scanners
+// - SPICE instrument kernels: rectangular fields of view with a number of pixels
 // Throws Error: NotFound, Io; Corrupt for a file that is cut short or damaged; Unsupported for
 // other files and types of models; InvalidArgument for numbers that are no camera.
 std::vector<CameraModel> ReadCameraModels(const std::string& path);

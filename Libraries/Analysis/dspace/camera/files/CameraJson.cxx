@@ -33,7 +33,7 @@ std::vector<double> JsonNumbersOf(const Json::Value& value, const std::string& n
   if (value.isNumeric()) {
     return {value.asDouble()};
   }
-  if (!value.isArray() || value.size() > 64) {
+  if (!value.isArray() || value.size() > 4096) {
     Damaged(label, "'" + name + "' is not a number or a list of numbers");
   }
   for (const Json::Value& each : value) {

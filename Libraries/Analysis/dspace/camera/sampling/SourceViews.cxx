@@ -73,6 +73,11 @@ double ScaleOf(const Sample& sample, const Eigen::Matrix3d& R_CF) {
 
 SourceViews::SourceViews(const CameraModel& model, int block) : Block_(block) {
   const LensModel& lens = *model.lens;
+  if (std::string(lens.Type()) == "line_scan") {
+    throw Error(Error::Kind::Unsupported, model.Label(),
+                "its row of pixels moves; accepted: a lens whose rays meet, or a range sensor with "
+                "a beam for each pixel");
+  }
   if (std::string(lens.Type()) == "orthographic") {
     throw Error(Error::Kind::Unsupported, model.Label(),
                 "its rays are parallel; accepted: a lens whose rays meet, or a camera with an "

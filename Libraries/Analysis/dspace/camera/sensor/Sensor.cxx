@@ -7,7 +7,7 @@
 #include <json/json.h>
 
 #include <dspace/Checks.h>
-#include <dspace/camera/sensor/Philox.h>
+#include <dspace/camera/sensor/Draws.h>
 
 namespace dspace {
 namespace {
@@ -16,8 +16,6 @@ constexpr double Planck = 6.62607015e-34;   // [J s], SI 2019
 constexpr double Light = 299792458.0;       // [m/s]
 constexpr double Boltzmann = 1.380649e-23;  // [J/K]
 constexpr double SolarTemperature = 5772.0; // [K], IAU 2015 resolution B3
-constexpr double RejectionAbove = 10.0;     // electrons
-constexpr double NormalAbove = 1e6;         // electrons
 const std::string Label = "sensor";
 
 // The channel of a Bayer pattern's pixel: 0 red, 1 green, 2 blue.
@@ -31,80 +29,6 @@ int FilterOf(const std::string& pattern, int x, int y) {
     return 2;
   }
 }
-
-// Uniform in (0, 1), of 53 bits.
-double Uniform(std::uint32_t high, std::uint32_t low) {
-  const std::uint64_t bits = (std::uint64_t(high) << 32 | low) >> 11;
-  return (double(bits) + 0.5) * 0x1p-53;
-}
-
-// The random numbers of one value: a counter of its own.
-class Draws {
-public:
-  Draws(std::uint64_t seed, std::uint32_t x, std::uint32_t y, std::uint32_t frame,
-        std::uint32_t channel)
-      : Key_{std::uint32_t(seed), std::uint32_t(seed >> 32)}, Counter_{x, y, frame, channel << 24} {
-  }
-
-  double Next() {
-    if (this->Left_ == 0) {
-      this->Block_ = Philox(this->Counter_, this->Key_);
-      ++this->Counter_[3];
-      this->Left_ = 2;
-    }
-    --this->Left_;
-    return Uniform(this->Block_[std::size_t(2 * this->Left_)],
-                   this->Block_[std::size_t(2 * this->Left_ + 1)]);
-  }
-  double Normal() { // Box and Muller
-    const double radius = std::sqrt(-2.0 * std::log(this->Next()));
-    return radius * std::cos(2.0 * M_PI * this->Next());
-  }
-  double Poisson(double mean) {
-    if (mean > NormalAbove) {
-      return std::max(std::round(mean + std::sqrt(mean) * this->Normal()), 0.0);
-    }
-    return mean < RejectionAbove ? this->FewPoisson(mean) : this->ManyPoisson(mean);
-  }
-
-private:
-  double FewPoisson(double mean) { // by multiplication (Knuth)
-    double count = 0.0;
-    const double end = std::exp(-mean);
-    for (double product = this->Next(); product > end; product *= this->Next()) {
-      count += 1.0;
-    }
-    return count;
-  }
-  // By transformed rejection. Source: W. Hoermann, "The transformed rejection method for generating
-  // Poisson random variables", Insurance: Mathematics and Economics 12, 1993 (PTRS).
-  double ManyPoisson(double mean) {
-    const double b = 0.931 + 2.53 * std::sqrt(mean);
-    const double a = -0.059 + 0.02483 * b;
-    const double scale = 1.1239 + 1.1328 / (b - 3.4);
-    const double sure = 0.9277 - 3.6224 / (b - 2.0);
-    for (;;) {
-      const double u = this->Next() - 0.5, v = this->Next();
-      const double s = 0.5 - std::abs(u);
-      const double k = std::floor((2.0 * a / s + b) * u + mean + 0.43);
-      if (s >= 0.07 && v <= sure) {
-        return k;
-      }
-      if (k < 0.0 || (s < 0.013 && v > s)) {
-        continue;
-      }
-      if (std::log(v * scale / (a / (s * s) + b)) <=
-          k * std::log(mean) - mean - std::lgamma(k + 1.0)) {
-        return k;
-      }
-    }
-  }
-
-  std::array<std::uint32_t, 2> Key_;
-  std::array<std::uint32_t, 4> Counter_;
-  std::array<std::uint32_t, 4> Block_{};
-  int Left_ = 0;
-};
 
 // Blurs each channel along x or y.
 void Blur(std::vector<float>& values, int width, int height, int channels,
