@@ -90,5 +90,46 @@ TEST(Obstacles, TheCheckEndsAMeasurement) {
   EXPECT_THROW(obstacles.First(high, high + V(1, 0, 0), "start", "end"), Error);
 }
 
+TEST(Obstacles, ARayMeetsTheNearestOfGroundAndTriangles) {
+  // Ground that rises by 1 in 2 along x, in a frame that is turned, doubled and moved.
+  const auto ground = Sampled(41, 41, NorthUp(-20.5, 20.5, 1.0),
+                              [](const Eigen::Vector2d& map) { return 0.5 * map.x(); });
+  Pose X_RS;
+  X_RS.position = V(100, -50, 30);
+  X_RS.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.4, V(1, 2, 3).normalized()));
+  X_RS.scale = 2.0;
+  Obstacles obstacles;
+  obstacles.Add(Obstacles::Ground{"slope", ground.get(), X_RS, 4});
+  const V zero_S = ground->MapToScene({0.0, 0.0, 0.0});
+  const V from_R = X_RS.Apply(zero_S + V(0, 0, 6));
+  const V down_R = X_RS.rotation * V(0, 0, -1);
+  Obstacles::Start start = obstacles.StartAt(from_R, "start");
+  Obstacles::Met met = obstacles.Meet(start, down_R, 1e9);
+  ASSERT_NE(met.ground, nullptr);
+  EXPECT_EQ(met.ground->id, 4u);
+  EXPECT_EQ(met.solid, nullptr);
+  EXPECT_NEAR(met.distance, 12.0, 1e-9);
+  const V normal_R = X_RS.rotation * V(-1, 0, 2).normalized();
+  EXPECT_NEAR((met.normal - normal_R).norm(), 0.0, 1e-9);
+  EXPECT_EQ(obstacles.Meet(start, down_R, 11.9).ground, nullptr);
+  EXPECT_TRUE(std::isinf(obstacles.Meet(start, -down_R, 1e9).distance));
+  // A triangle in front of it, in a mesh that is stretched along x: its normal turns with it.
+  auto mesh = std::make_shared<Mesh>();
+  mesh->positions = {-9, -9, -9, 9, -9, 9, 0, 9, 0}; // the plane x = z
+  mesh->indices = {0, 1, 2};
+  Eigen::Affine3d X_RM = Eigen::Affine3d::Identity();
+  X_RM.translate(from_R + 5.0 * down_R).rotate(X_RS.rotation).scale(V(3, 1, 1));
+  obstacles.Add(8, std::make_shared<MeshRays>(mesh), X_RM, 0.25);
+  met = obstacles.Meet(start, down_R, std::numeric_limits<double>::infinity());
+  ASSERT_NE(met.solid, nullptr);
+  EXPECT_EQ(met.ground, nullptr);
+  EXPECT_EQ(met.solid->id, 8u);
+  EXPECT_EQ(met.solid->albedo, 0.25);
+  EXPECT_NEAR(met.distance, 5.0, 1e-9);
+  EXPECT_NEAR(std::abs(met.normal.dot(X_RS.rotation * V(1, 0, -3).normalized())), 1.0, 1e-9);
+  // A start below the ground.
+  EXPECT_THROW(obstacles.StartAt(X_RS.Apply(zero_S - V(0, 0, 1)), "start"), Error);
+}
+
 } // namespace
 } // namespace dspace::testing

@@ -13,7 +13,7 @@ constexpr double Infinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t MostDepth = 64;
 
 // Moeller and Trumbore (1997), with edges that belong to both of their triangles.
-double Crossing(const V& origin, const V& direction, const V& a, const V& b, const V& c) {
+double CrossingOf(const V& origin, const V& direction, const V& a, const V& b, const V& c) {
   const V ab = b - a;
   const V ac = c - a;
   const V p = direction.cross(ac);
@@ -188,17 +188,17 @@ void MeshRays::Walk(const Enter& enter, const Visit& visit) const {
   }
 }
 
-double MeshRays::Intersect(const V& origin_M, const V& direction_M, double first,
-                           double last) const {
-  double best = Infinity;
+MeshRays::Crossing MeshRays::Cross(const V& origin_M, const V& direction_M, double first,
+                                   double last) const {
+  Crossing best;
   this->Walk(
       [&](const Eigen::AlignedBox3d& box) {
-        return Reaches(box, origin_M, direction_M, first, std::min(last, best));
+        return Reaches(box, origin_M, direction_M, first, std::min(last, best.t));
       },
       [&](const V& a, const V& b, const V& c) {
-        const double found = Crossing(origin_M, direction_M, a, b, c);
-        if (found >= first && found <= last && found < best) {
-          best = found;
+        const double found = CrossingOf(origin_M, direction_M, a, b, c);
+        if (found >= first && found <= last && found < best.t) {
+          best = {found, (b - a).cross(c - a)};
         }
       });
   return best;
@@ -227,7 +227,7 @@ MeshRays::Near MeshRays::Nearest(const Eigen::Affine3d& X_WM, const V& a_W, cons
         const V p = X_WM * a_M;
         const V q = X_WM * b_M;
         const V r = X_WM * c_M;
-        const double crossing = Crossing(a_W, b_W - a_W, p, q, r);
+        const double crossing = CrossingOf(a_W, b_W - a_W, p, q, r);
         if (crossing >= 0.0 && crossing <= 1.0) {
           const V point = a_W + crossing * (b_W - a_W);
           offer(point, point);

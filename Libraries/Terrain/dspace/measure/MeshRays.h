@@ -39,7 +39,16 @@ public:
   // The first crossing with a triangle, of either side, of origin + t * direction for
   // first <= t <= last; +infinity: none. The direction is finite; t is in units of its length.
   double Intersect(const Eigen::Vector3d& origin_M, const Eigen::Vector3d& direction_M,
-                   double first, double last) const;
+                   double first, double last) const {
+    return this->Cross(origin_M, direction_M, first, last).t;
+  }
+  struct Crossing {
+    double t = std::numeric_limits<double>::infinity();
+    // Of the triangle, towards the side from which its corners run counter-clockwise; not unit.
+    Eigen::Vector3d normal_M = Eigen::Vector3d::Zero();
+  };
+  Crossing Cross(const Eigen::Vector3d& origin_M, const Eigen::Vector3d& direction_M, double first,
+                 double last) const;
 
   struct Near {
     double distance = std::numeric_limits<double>::infinity();

@@ -5,9 +5,9 @@
 namespace dspace {
 
 void Obstacles::Add(std::uint32_t object, std::shared_ptr<const MeshRays> rays,
-                    const Eigen::Affine3d& X_RM) {
+                    const Eigen::Affine3d& X_RM, double albedo) {
   if (rays && !rays->IsEmpty()) {
-    this->Solids_.push_back({object, std::move(rays), X_RM, X_RM.inverse()});
+    this->Solids_.push_back({object, std::move(rays), X_RM, X_RM.inverse(), albedo});
   }
 }
 
@@ -62,6 +62,39 @@ Obstacles::Hit Obstacles::First(const Eigen::Vector3d& from_R, const Eigen::Vect
     }
   }
   return first;
+}
+
+Obstacles::Start Obstacles::StartAt(const Eigen::Vector3d& p_R, const std::string& label) const {
+  Start start{p_R, {}};
+  for (const Ground& ground : this->Grounds_) {
+    start.p_S.push_back(this->Stand(ground, p_R, label));
+  }
+  return start;
+}
+
+Obstacles::Met Obstacles::Meet(const Start& start, const Eigen::Vector3d& direction_R,
+                               double most) const {
+  this->Check();
+  Met met;
+  for (std::size_t i = 0; i < this->Grounds_.size(); ++i) {
+    const Ground& ground = this->Grounds_[i];
+    const double scale = ground.X_RS.scale;
+    const RayHit found = ground.surface->Intersect(
+        start.p_S[i], ground.X_RS.rotation.conjugate() * direction_R, most / scale);
+    const double distance = scale * found.distance;
+    if (found.hit && distance < met.distance) {
+      met = {&ground, nullptr, distance, ground.X_RS.rotation * found.normal_S};
+    }
+  }
+  for (const Solid& solid : this->Solids_) {
+    const Eigen::Matrix3d toSolid = solid.X_MR.linear();
+    const MeshRays::Crossing found = solid.rays->Cross(
+        solid.X_MR * start.p_R, toSolid * direction_R, Touch, std::min(most, met.distance));
+    if (found.t < met.distance) {
+      met = {nullptr, &solid, found.t, (toSolid.transpose() * found.normal_M).normalized()};
+    }
+  }
+  return met;
 }
 
 } // namespace dspace

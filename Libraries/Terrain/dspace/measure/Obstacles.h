@@ -23,13 +23,15 @@ public:
   struct Ground {
     std::string name; // of the terrain
     const TerrainSurface* surface = nullptr;
-    Pose X_RS; // of the terrain's frame
+    Pose X_RS;            // of the terrain's frame
+    std::uint32_t id = 0; // of its object
   };
   struct Solid {
     std::uint32_t id = 0;
     std::shared_ptr<const MeshRays> rays;
     Eigen::Affine3d X_RM = Eigen::Affine3d::Identity();
     Eigen::Affine3d X_MR = Eigen::Affine3d::Identity();
+    double albedo = 1.0; // of a Lambertian surface, for range sensors
   };
   struct Hit {
     bool hit = false;
@@ -45,7 +47,8 @@ public:
 
   // The surface must outlive this.
   void Add(Ground ground) { this->Grounds_.push_back(std::move(ground)); }
-  void Add(std::uint32_t object, std::shared_ptr<const MeshRays> rays, const Eigen::Affine3d& X_RM);
+  void Add(std::uint32_t object, std::shared_ptr<const MeshRays> rays, const Eigen::Affine3d& X_RM,
+           double albedo = 1.0);
   // Called before every ray; what it throws ends the measurement.
   void SetCheck(std::function<void()> check) { this->Check_ = std::move(check); }
   void Check() const {
@@ -68,6 +71,23 @@ public:
   // The first obstacle of the line. `labels` as for Stand(). Throws what it throws.
   Hit First(const Eigen::Vector3d& from_R, const Eigen::Vector3d& to_R,
             const std::string& fromLabel, const std::string& toLabel) const;
+
+  // Where rays start, as each ground takes it.
+  struct Start {
+    Eigen::Vector3d p_R = Eigen::Vector3d::Zero();
+    std::vector<Eigen::Vector3d> p_S; // by ground
+  };
+  // Throws what Stand() throws.
+  Start StartAt(const Eigen::Vector3d& p_R, const std::string& label) const;
+  // The first obstacle of a ray.
+  struct Met {
+    const Ground* ground = nullptr;                            // null: a solid, or nothing
+    const Solid* solid = nullptr;                              // null: ground, or nothing
+    double distance = std::numeric_limits<double>::infinity(); // [m]; infinity: nothing
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();          // in the root, unit, of either side
+  };
+  // Up to a distance `most`, which may be infinite. `direction_R`: unit.
+  Met Meet(const Start& start, const Eigen::Vector3d& direction_R, double most) const;
 
 private:
   std::vector<Ground> Grounds_;
