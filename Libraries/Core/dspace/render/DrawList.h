@@ -121,6 +121,7 @@ struct DrawView {
   // True for a picture that is saved or measured: custom geometry waits for all of its data. False
   // for an interactive one, which shows what is loaded.
   bool complete = false;
+  bool normals = false; // pictures of angles show normals in view coordinates in their place
   ViewLook look;
   // Clip from view coordinates in place of the projection's, for pictures that a light sees: levels
   // and poses remain those of the camera.

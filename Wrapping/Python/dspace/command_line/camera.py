@@ -6,7 +6,8 @@ import sys
 
 from dspace.command_line import Failed
 
-PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase", "point")
+PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase",
+          "normal", "point")
 
 
 def add_arguments(parser):
