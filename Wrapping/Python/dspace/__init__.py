@@ -43,6 +43,8 @@ _HOMES = {
     "Battery": "measure.plans", "BodySite": "measure.plans", "Panel": "measure.plans",
     "Contact": "measure.results", "PowerProfile": "measure.results", "SkyTrack": "measure.results",
     "Horizon": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results",
+    "Altimeter": "measure.ranges", "LensFootprint": "measure.lens_ornaments", "Lidar": "measure.ranges",
+    "RangeScan": "measure.point_cloud",
     "MapFile": "measure.map_file", "Site": "terrain.site",
     "Movie": "movies.movie",
     "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",

@@ -15,6 +15,7 @@ from dspace.frames.poses import to_pose
 from dspace.measure.lens_ornaments import LensOrnaments
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
+from dspace.measure.scans import Scans
 from dspace.measure.sights import Sights
 from dspace.measure.visibility import Visibility
 from dspace.objects.fragments import Fragment, Light, put_light
@@ -292,7 +293,9 @@ class Scene(Strict):
     line_of_sight = delegate(Sights, "line_of_sight")
     horizon = delegate(Sights, "horizon")
     lit_area = delegate(Lit, "lit_area")
+    scan = delegate(Scans, "scan")
     add_lens_frustum = delegate(LensOrnaments, "add_lens_frustum")
+    add_lens_footprint = delegate(LensOrnaments, "add_lens_footprint")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
     power_profile = delegate(Visibility, "power_profile")
