@@ -64,6 +64,7 @@ def test_a_frustum_through_a_lens(scene):
     x, y = 2.0 * (40 / 60) / np.hypot(1.0, 40 / 60), 2.0 * 0.5 / np.hypot(1.0, 0.5)
     np.testing.assert_allclose((info.box_minimum.x, info.box_minimum.y), (0.1 - x, 0.2 - y), atol=1e-6)
     np.testing.assert_allclose((info.box_maximum.x, info.box_maximum.y), (0.1 + x, 0.2 + y), atol=1e-6)
+    assert frustum.to_polydata().GetNumberOfLines() == 4 + 4 * 4  # along the corners, and around
     # A fish-eye's corners, beyond 180 degrees from the axis, have no ray.
     assert scene.add_lens_frustum(FISHEYE, 1.0, body).ornamental
 
