@@ -77,7 +77,7 @@ std::string Scan() {
          "], \"ephemeris_times\": [" + times + "]}, \"body_rotation\": {\"quaternions\": [" +
          Times("[0.0, -0.707106781186547, 0.0, 0.707106781186547]", 9) +
          "], \"ephemeris_times\": [" + times +
-         "]}, \"starting_detector_line\": 0, \"starting_detector_sample\": 0})";
+         "]}, \"starting_detector_line\": 1, \"starting_detector_sample\": 0})";
 }
 
 // Where the ray of an ISD's pixel first meets a sphere about the body's centre; without a crossing
