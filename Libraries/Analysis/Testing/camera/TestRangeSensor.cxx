@@ -254,7 +254,7 @@ TEST(RangeSensor, SettingsOutOfRangeAreRejected) {
   ExpectRejected(s, "the greatest range is nan");
   s = {};
   s.minimumRange = -1.0;
-  ExpectRejected(s, "the least range is -1; accepted: 0 to 1e18 m");
+  ExpectRejected(s, "the least range is -1; accepted: 0 to 1e15 m");
   s = {};
   s.rays = 0;
   ExpectRejected(s, "the number of rays is 0; accepted: 1 to 10000");
