@@ -7,14 +7,14 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
-from pictures import application, cookbook, lenses, light, measure, models, scenes, sky, terrain, trajectories, vtk  # noqa: E402
+from pictures import application, cookbook, lenses, light, measure, models, ranges, scenes, sky, terrain, trajectories, vtk  # noqa: E402
 from pictures.paths import DATA, IMAGES  # noqa: E402
 
 EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
               vtk.own_object, lenses.lenses, light.photometry, sky.stars, measure.measure_sites, measure.measure_ensemble, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages)
-OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
+OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain, application.application_terrain_dock, application.application_measure,
                 trajectories.artemis_inertial, trajectories.artemis_rotating, sky.constellations, sky.body_descent,
                 sky.artemis_photo)

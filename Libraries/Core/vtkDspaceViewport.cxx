@@ -154,7 +154,19 @@ struct vtkDspaceViewport::Internals {
     }
   }
 
-  // Planes that hold light and its angles.
+  // Vectors in the coordinates of a view as vectors in the root.
+  std::vector<float> Rooted(std::vector<float> vectors, const dspace::CameraPose& camera) const {
+    Eigen::Matrix3d R_CV = Eigen::Matrix3d::Identity(); // the view's Y is up, its Z backwards
+    R_CV(1, 1) = R_CV(2, 2) = -1.0;
+    const Eigen::Quaterniond q_RF = this->scene->Frames().WorldPose(camera.frame).rotation;
+    const Eigen::Matrix3f R_RV =
+        ((q_RF * camera.X_FC.rotation).toRotationMatrix() * R_CV).cast<float>();
+    Eigen::Map<Eigen::Matrix3Xf> columns(vectors.data(), 3, Eigen::Index(vectors.size() / 3));
+    columns = (R_RV * columns).eval();
+    return vectors;
+  }
+
+  // Planes that hold light, its angles and normals.
   void DrawLight(const dspace::CaptureRequest& request, dspace::Capture& capture) {
     const dspace::DrawFilter filter = this->Filter(request);
     dspace::VtkErrorTrap trap(this->context->GetMessages()); // of props
@@ -180,6 +192,12 @@ struct vtkDspaceViewport::Internals {
       if (request.litFraction) {
         capture.litFraction = this->angles.LitFractions();
       }
+    }
+    if (request.normal) {
+      dspace::DrawView view = this->View(1);
+      view.complete = true;
+      this->angles.DrawNormals(this->context, *this->scene, view, filter);
+      capture.normal = this->Rooted(this->angles.Normals(), view.camera);
     }
     trap.Check(this->Object());
   }
@@ -475,7 +493,7 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
     }
   }
   if (request.radiance || request.incidence || request.emission || request.phase ||
-      request.litFraction) {
+      request.litFraction || request.normal) {
     self.DrawLight(request, capture);
   }
   return capture;

@@ -168,6 +168,7 @@ struct vtkDspaceSession::Internals {
     this->planes["incidence"] = ToArray<vtkFloatArray>("incidence", capture.incidence, 1);
     this->planes["emission"] = ToArray<vtkFloatArray>("emission", capture.emission, 1);
     this->planes["phase"] = ToArray<vtkFloatArray>("phase", capture.phase, 1);
+    this->planes["normal"] = ToArray<vtkFloatArray>("normal", capture.normal, 3);
     capture = {};
   }
 };

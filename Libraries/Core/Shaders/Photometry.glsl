@@ -74,6 +74,7 @@ float radianceFactor(vec3 L, vec3 N, vec3 V, float mu0, float mu)
 
 #ifdef DSPACE_ANGLES
 uniform vec3 towardsSunVC; // unit, or 0 without a Sun
+uniform int writeNormals; // 1: in place of angles
 
 float degreesBetween(vec3 a, vec3 b)
 {
@@ -81,9 +82,12 @@ float degreesBetween(vec3 a, vec3 b)
 }
 
 // Incidence, emission, phase; 1, as they are known, and the part of the Sun's disc that lights the
-// surface.
+// surface. With writeNormals: the normal and 1.
 vec4 photometricAngles(vec3 N, vec3 positionVC, int parallel)
 {
+  if (writeNormals == 1) {
+    return vec4(N, 1.0);
+  }
   vec3 V = parallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
   float lit = 1.0;
 #ifdef DSPACE_SHADOWED

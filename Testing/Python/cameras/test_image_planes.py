@@ -1,4 +1,4 @@
-"""Planes of pictures through lenses: points, ground coordinates and motion against closed forms."""
+"""Planes of pictures through lenses: normals, points, ground coordinates and motion against closed forms."""
 import numpy as np
 import pytest
 
@@ -28,35 +28,42 @@ def grid(model):
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_points_of_a_wall_and_a_ball(scene, name):
+def test_normals_and_points_of_a_wall_and_a_ball(scene, name):
     """In a frame that is turned and far from the root: the wall at Z = 6 and a ball before it."""
     model = MODELS[name]
     place = np.array((2e5, -3e5, 1e5))
     body = scene.add_frame("body", position=place, quaternion=Q)
     wall = scene.add_plane(400, 400, frame=body, position=(0, 0, 6.0))
     ball = scene.add_sphere(1.0, frame=body, position=(0.3, 0.2, 4.0))
-    planes = scene.simulate_image(model, frame=body, color=False, label=True, point=True)
-    assert set(planes) == {"label", "point", "lens"} and planes["point"].dtype == np.float64
+    planes = scene.simulate_image(model, frame=body, color=False, label=True, normal=True, point=True)
+    assert set(planes) == {"label", "normal", "point", "lens"} and planes["point"].dtype == np.float64
     origins, directions = model.rays(grid(model))
     on_wall, on_ball = planes["label"] == wall.id, planes["label"] == ball.id
     assert on_wall.sum() > 1000 and on_ball.sum() > 100
+    toward = turned(np.array((0.0, 0.0, -1.0)), TURN)
+    np.testing.assert_allclose(planes["normal"][on_wall], np.broadcast_to(toward, (on_wall.sum(), 3)), atol=2e-6)
     expected = place + turned(origins + ((6.0 - origins[..., 2]) / directions[..., 2])[..., None] * directions, TURN)
     near = on_wall & (directions[..., 2] > 0.75)  # within the first source view: the wall's depth is the same in all of it
     np.testing.assert_allclose(planes["point"][near], expected[near], atol=2e-4)
     from_center = turned(planes["point"][on_ball] - place, -TURN) - (0.3, 0.2, 4.0)
     inner = np.linalg.norm(from_center, axis=-1) < 1.02  # rays of whose own pixel the source shows the ball
     assert inner.sum() > 80
-    np.testing.assert_allclose(np.linalg.norm(from_center[inner], axis=-1), 1.0, atol=0.02)  # its facets, and half a pixel
+    normals = turned(planes["normal"][on_ball].astype(float), -TURN)[inner]
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=-1), 1.0, atol=1e-5)
+    # A source pixel is at most one of the picture: half of its angle away, and the ball's facets.
+    np.testing.assert_allclose(normals, from_center[inner], atol=0.12)
+    assert np.abs(normals - from_center[inner]).mean() < 0.02
     nothing = planes["label"] == 0
-    assert np.isnan(planes["point"][nothing]).all()
+    assert np.isnan(planes["normal"][nothing]).all() and np.isnan(planes["point"][nothing]).all()
 
 
-def test_points_in_tiles_are_the_same_bytes(scene):
+def test_normals_in_tiles_are_the_same_bytes(scene):
     scene.add_sphere(1.0, position=(0, 0, 4.0))
     scene.add_plane(50, 50, position=(0, 0, 6.0))
-    whole, tiled = (scene.simulate_image(MODELS["equidistant"], frame=scene.root, point=True, tile=tile)
+    whole, tiled = (scene.simulate_image(MODELS["equidistant"], frame=scene.root, normal=True, point=True, tile=tile)
                     for tile in (512, 64))
-    np.testing.assert_array_equal(whole["point"], tiled["point"])
+    for plane in ("normal", "point"):
+        np.testing.assert_array_equal(whole[plane], tiled[plane])
 
 
 @pytest.mark.parametrize("mode", ["triangles", "clipmap"])
@@ -69,8 +76,8 @@ def test_ground_coordinates_of_a_slope(scene, tmp_path, mode):
     middle = ground.from_map([[100.0, 75.0, 0.2 * 100.0]])[0]
     camera = scene.add_camera("down", eye=middle + (0, 0, 12.0), target=middle, up=(0, 1, 0), frame=frame)
     model = MODELS["pinhole"]
-    planes = scene.simulate_image(model, camera, color=False, ground=ground)
-    assert set(planes) == {"ground", "lens"}
+    planes = scene.simulate_image(model, camera, color=False, normal=True, ground=ground)
+    assert set(planes) == {"normal", "ground", "lens"}
     # Rays of a camera 12 m above (100, 75), X east, Y south, against the plane z = 0.2 x.
     d = (grid(model) - (39.5, 29.5)) / 60.0
     t = 12.0 / (1.0 + 0.2 * d[..., 0])
@@ -78,6 +85,9 @@ def test_ground_coordinates_of_a_slope(scene, tmp_path, mode):
     pixel = 12.0 / 60.0  # a source pixel is at most as wide; on a slope of 0.2 its half moves the range by a fiftieth of a metre
     np.testing.assert_allclose(planes["ground"], expected, atol=0.2 * pixel * 0.5 + 1e-3)
     np.testing.assert_allclose(planes["ground"][..., 2], 0.2 * planes["ground"][..., 0], atol=0.2 * pixel * 0.5 + 1e-3)
+    a = 0.6  # the frame's turn about Z
+    normal = np.array((-0.2, 0.0, 1.0)) / np.sqrt(1.04)
+    np.testing.assert_allclose(planes["normal"], np.broadcast_to(turned(normal, a, 2), planes["normal"].shape), atol=1e-3)
     # The raster has no longitudes and latitudes.
     assert np.isnan(scene.simulate_image(model, camera, geographic=ground)["geographic"][..., :2]).all()
 

@@ -44,6 +44,8 @@ _HOMES = {
     "Contact": "measure.results", "PowerProfile": "measure.results", "SkyTrack": "measure.results",
     "Horizon": "measure.results", "MeasuredArea": "measure.results", "MeasuredLine": "measure.results",
     "Profile": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results",
+    "Altimeter": "measure.ranges", "LensFootprint": "measure.lens_ornaments", "Lidar": "measure.ranges",
+    "RangeScan": "measure.point_cloud",
     "BestSite": "measure.best_sites", "MapFile": "measure.map_file", "Site": "terrain.site", "Variogram": "measure.variogram",
     "Movie": "movies.movie",
     "Playback": "playback.playback", "Recording": "recording.recording", "RecordingFile": "recording.file",

@@ -30,6 +30,8 @@ struct Capture {
   std::vector<float> incidence;
   std::vector<float> emission;
   std::vector<float> phase;
+  // Of the surface, as it is lit: x y z, unit, in the root. NaN where nothing was hit.
+  std::vector<float> normal;
 };
 
 struct CaptureRequest {
@@ -44,6 +46,7 @@ struct CaptureRequest {
   bool incidence = false;
   bool emission = false;
   bool phase = false;
+  bool normal = false;
 };
 
 // Result of picking at a pixel.

@@ -123,6 +123,7 @@ struct DrawView {
   // True for a picture that is saved or measured: custom geometry waits for all of its data. False
   // for an interactive one, which shows what is loaded.
   bool complete = false;
+  bool normals = false; // pictures of angles show normals in view coordinates in their place
   ViewLook look;
   // The factor on linear light, where it is known before the picture is drawn and the lights do not
   // have it (ExposedByLights).

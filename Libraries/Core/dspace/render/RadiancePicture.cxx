@@ -89,6 +89,25 @@ void AnglePicture::Draw(vtkDspaceRenderContext* context, const Scene& scene, con
   this->Values_ = this->Target_->ReadLight();
 }
 
+void AnglePicture::DrawNormals(vtkDspaceRenderContext* context, const Scene& scene,
+                               const DrawView& sought, const DrawFilter& filter) {
+  DrawView view = sought;
+  view.normals = true;
+  this->Draw(context, scene, view, filter);
+}
+
+std::vector<float> AnglePicture::Normals() const {
+  std::vector<float> normals;
+  normals.reserve(this->Values_.size() / 4 * 3);
+  for (std::size_t i = 0; i < this->Values_.size(); i += 4) {
+    const bool known = this->Values_[i + 3] > 0.0f;
+    for (std::size_t k = 0; k < 3; ++k) {
+      normals.push_back(known ? this->Values_[i + k] : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return normals;
+}
+
 std::vector<float> AnglePicture::Degrees(Angle angle) const {
   std::vector<float> degrees;
   degrees.reserve(this->Values_.size() / 4);

@@ -46,6 +46,13 @@ public:
   // view shows them; NaN as for incidence. 0 where the surface faces away from the Sun.
   std::vector<float> LitFractions() const;
 
+  // Draws normals in place of the above.
+  void DrawNormals(vtkDspaceRenderContext* context, const Scene& scene, const DrawView& view,
+                   const DrawFilter& filter);
+  // x y z at each pixel, unit, in view coordinates: X right, Y up, Z backwards; NaN as for
+  // emission. After DrawNormals().
+  std::vector<float> Normals() const;
+
 private:
   std::unique_ptr<RenderTarget> Target_;
   std::unique_ptr<SceneDrawer> Drawer_;

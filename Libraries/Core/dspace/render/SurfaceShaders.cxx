@@ -295,6 +295,9 @@ void SurfaceShaders::SetView(vtkShaderProgram* program, const DrawList& list, co
     const Eigen::Vector3f toSun = list.TowardsSun().value_or(Eigen::Vector3f::Zero());
     program->SetUniform3f("towardsSunVC", toSun.data());
   }
+  if (program->IsUniformUsed("writeNormals")) {
+    program->SetUniformi("writeNormals", view.normals ? 1 : 0);
+  }
 
   if (list.SunBody() && program->IsUniformUsed("sunPlaceVC")) {
     const Eigen::Vector3f place = list.SunBody()->center.cast<float>();

@@ -355,6 +355,12 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(unproject_pixels { camera { model: "{\"model\": {\"type\": \"pinhole\", \"focal\": [9, 9], \"center\": [5, 5], \"width\": 11, \"height\": 11}}"
            own_pose: true frame: 10 } pixel: [5, 5] })",
        {}},
+      {R"(scan_ranges { measuring { hidden_fragment: "parts" deadline_s: 30 } place { frame: 11 position { z: 9 } }
+           directions { direction: [0, 0, -1, 1, 0, -3] } without_object: 2 first_beam: 4
+           sensor { report: MEAN minimum_range: 0.1 divergence_deg: 1 rays: 7 noise: 0.01
+             noise_fraction: 1e-3 drop_out: 0.1 greatest_incidence_deg: 80 least_intensity: 1e-9 seed: 3 scan: 1
+             terrain_albedo: 0.3 } })",
+       {}},
       {R"(ephemeris { target: "moon" observer: "earth" time_s: [0, 100] correction: APPARENT })",
        {}},
       {R"(sky_state { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } }

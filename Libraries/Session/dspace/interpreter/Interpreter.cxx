@@ -58,6 +58,7 @@ Interpreter::Interpreter() {
   AddTerrainCommands(this->Registry_);
   AddSightRequests(this->Registry_);
   AddLitAreaRequest(this->Registry_);
+  AddRangeRequests(this->Registry_);
   AddMapRequests(this->Registry_);
   AddLensRequests(this->Registry_);
   AddExportCommands(this->Registry_);

@@ -76,6 +76,7 @@ void AddLensRequests(Registry& registry);
 void AddTerrainCommands(Registry& registry);
 void AddSightRequests(Registry& registry);
 void AddLitAreaRequest(Registry& registry);
+void AddRangeRequests(Registry& registry);
 void AddMapRequests(Registry& registry);
 void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);

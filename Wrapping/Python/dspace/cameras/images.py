@@ -15,9 +15,9 @@ from dspace.errors import WrongType
 TILE = 512  # pixels a side, drawn between two checks for Ctrl-C
 PLANES = {"color": (np.uint8, (4,)), "radiance": (np.float32, (3,)), "depth": (np.float32, ()), "range": (np.float32, ()),
           "label": (np.uint32, ()), "lit_fraction": (np.float32, ()), "incidence": (np.float32, ()),
-          "emission": (np.float32, ()), "phase": (np.float32, ())}
+          "emission": (np.float32, ()), "phase": (np.float32, ()), "normal": (np.float32, (3,))}
 UNITS = {"color": "sRGB", "radiance": "W/m^2/sr", "depth": "m", "range": "m", "incidence": "deg", "emission": "deg",
-         "phase": "deg", "lit_fraction": "1", "label": "", "counts": "counts"}
+         "phase": "deg", "lit_fraction": "1", "label": "", "counts": "counts", "normal": "1"}
 
 
 class LensPicture(NamedTuple):
@@ -55,7 +55,7 @@ class SceneImages:
 
     def simulate_image(self, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, color=True,
                        radiance=False, depth=False, range=False, label=False, lit_fraction=False, incidence=False,
-                       emission=False, phase=False, point=False, ground=None, geographic=None, motion=None,
+                       emission=False, phase=False, normal=False, point=False, ground=None, geographic=None, motion=None,
                        samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
         """The image that a camera with a lens takes: a dict of planes (h, w, ...), row 0 on top, and "lens", a
         LensPicture.
@@ -65,8 +65,9 @@ class SceneImages:
         rover's body. size: (width, height), needed where the model has none; another size than the model's is rejected
         unless scale=True. Planes: as Viewport.capture, of physical objects; "color" is the sRGB of the radiance times
         `exposure`, 1 at 1361 / pi W/m^2/sr (white in full Sun); "range" is from the pixel's own entrance pupil.
-        Planes of doubles, from the range along the pixel's own ray: "point" (h, w, 3) in the root [m]; "ground" (h, w, 3): map
-        x, y and height of a Terrain, given as ground=terrain; "geographic" (h, w, 3): longitude, latitude [deg] and height, geographic=terrain. Heights are above the
+        "normal" (h, w, 3) is the surface's as it is lit, unit, in the root. Planes of doubles, from the range along the
+        pixel's own ray: "point" (h, w, 3) in the root [m]; "ground" (h, w, 3): map x, y and height of a Terrain, given as
+        ground=terrain; "geographic" (h, w, 3): longitude, latitude [deg] and height, geographic=terrain. Heights are above the
         terrain's vertical datum. "motion" (h, w, 2): where the pixel's surface is in a state, given as motion=image_state()
         at another time, less where it is now [pixels], by the motion of camera and objects; NaN: not seen, or nothing there.
         Joints inside one object do not count. NaN where there is nothing.
@@ -80,7 +81,7 @@ class SceneImages:
         the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out."""
         about = "simulated image"
         wanted = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
-                      incidence=incidence, emission=emission, phase=phase)
+                      incidence=incidence, emission=emission, phase=phase, normal=normal)
         terrains = {"ground": ground, "geographic": geographic}
         for name, terrain in terrains.items():
             if terrain is not None and not (hasattr(terrain, "to_map") and hasattr(terrain, "locate")):

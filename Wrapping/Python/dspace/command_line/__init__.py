@@ -30,6 +30,7 @@ WORDS = {"camera": "project, check and convert camera models, and draw through t
          "movie": "make a movie of a run from a text file of camera key frames",
          "play": "draw pictures of a recording, without a simulation",
          "power": "profile the power of solar panels at a site over a span of time",
+         "scan": "measure ranges with a lidar or an altimeter on terrain or in a recording",
          "serve": "serve a session to simulations and viewers in other processes",
          "sites": "rank the best-lit sites around a point, for masts of given heights",
          "sky": "draw the sky over a site, and print the direction of a body",

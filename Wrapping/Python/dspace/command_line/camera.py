@@ -7,7 +7,8 @@ import sys
 from dspace.command_line import Failed
 from dspace.command_line.recorded import add_recording, recorded_scene
 
-PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase", "point")
+PLANES = ("color", "radiance", "depth", "range", "label", "lit_fraction", "incidence", "emission", "phase",
+          "normal", "point")
 
 
 def add_arguments(parser):

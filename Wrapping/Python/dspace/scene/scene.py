@@ -18,6 +18,7 @@ from dspace.measure.lens_ornaments import LensOrnaments
 from dspace.measure.lines import Lines
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
+from dspace.measure.scans import Scans
 from dspace.measure.sights import Sights
 from dspace.measure.visibility import Visibility
 from dspace.objects.fragments import Fragment, Light, put_light
@@ -333,7 +334,9 @@ class Scene(Strict):
     measure_area = delegate(Lines, "measure_area")
     measure_angle = delegate(Lines, "measure_angle")
     lit_area = delegate(Lit, "lit_area")
+    scan = delegate(Scans, "scan")
     add_lens_frustum = delegate(LensOrnaments, "add_lens_frustum")
+    add_lens_footprint = delegate(LensOrnaments, "add_lens_footprint")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
     power_profile = delegate(Visibility, "power_profile")

@@ -19,7 +19,7 @@ constexpr float Unknown = std::numeric_limits<float>::quiet_NaN();
 std::size_t LensPlanes::Bytes() const {
   return sizeof(float) * (this->radiance.size() + this->depth.size() + this->range.size() +
                           this->label.size() + this->litFraction.size() + this->incidence.size() +
-                          this->emission.size() + this->phase.size());
+                          this->emission.size() + this->phase.size() + this->normal.size());
 }
 
 LensTile::LensTile(const SourceViews& views, std::shared_ptr<const LensMap> map,
@@ -42,6 +42,7 @@ LensTile::LensTile(const SourceViews& views, std::shared_ptr<const LensMap> map,
   make(wishes.incidence, planes.incidence, 1, Unknown);
   make(wishes.emission, planes.emission, 1, Unknown);
   make(wishes.phase, planes.phase, 1, Unknown);
+  make(wishes.normal, planes.normal, 3, Unknown);
 }
 
 bool LensTile::NeedsDepth() const {
@@ -185,6 +186,9 @@ void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
     copy(this->Wishes_.incidence, from.incidence, to.incidence);
     copy(this->Wishes_.emission, from.emission, to.emission);
     copy(this->Wishes_.phase, from.phase, to.phase);
+    if (this->Wishes_.normal) {
+      std::copy_n(&from.normal[3 * source], 3, &to.normal[3 * at]);
+    }
   }
 }
 

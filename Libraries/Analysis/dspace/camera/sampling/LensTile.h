@@ -22,6 +22,7 @@ struct LensPlanes {
   std::vector<float> incidence;
   std::vector<float> emission;
   std::vector<float> phase;
+  std::vector<float> normal; // three a pixel, in the root; NaN
 
   std::size_t Bytes() const;
 };
@@ -29,7 +30,7 @@ struct LensPlanes {
 // Which planes of a tile are wanted.
 struct LensWishes {
   bool radiance = false, depth = false, range = false, label = false, litFraction = false,
-       incidence = false, emission = false, phase = false;
+       incidence = false, emission = false, phase = false, normal = false;
 };
 
 // Radiance is interpolated between source pixels, over the footprint of the pixel where the source

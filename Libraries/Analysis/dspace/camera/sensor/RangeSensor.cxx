@@ -113,8 +113,8 @@ bool IsNearer(const Ray& a, const Ray& b) {
 
 RangeSensor::RangeSensor(const RangeSettings& settings) : Settings_(settings) {
   const RangeSettings& s = this->Settings_;
-  Require(s.minimumRange >= 0.0 && s.minimumRange <= 1e18, RangeLabel, "the least range",
-          s.minimumRange, "0 to 1e18 m");
+  Require(s.minimumRange >= 0.0 && s.minimumRange <= 1e15, RangeLabel, "the least range",
+          s.minimumRange, "0 to 1e15 m");
   if (!(s.maximumRange > s.minimumRange)) {
     Reject(RangeLabel, "the greatest range is " + NumberText(s.maximumRange) +
                            " m; accepted: above the least one, " + NumberText(s.minimumRange) +

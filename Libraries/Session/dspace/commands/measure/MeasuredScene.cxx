@@ -1,5 +1,6 @@
 #include <dspace/commands/measure/MeasuredScene.h>
 
+#include <array>
 #include <cmath>
 #include <set>
 
@@ -11,6 +12,25 @@ namespace dspace::session {
 namespace {
 
 constexpr double MostHeight = 1e12; // [m] of a site
+
+double LinearOf(double srgb) {
+  return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+// Of the part's material with what the object overrides.
+double AlbedoOf(const GraphicsObject& object, const Part& part) {
+  const std::array<double, 3>* color = part.material ? &part.material->color : nullptr;
+  if (object.material.color) {
+    color = &*object.material.color;
+  }
+  const auto over = object.parts.find(part.name);
+  if (over != object.parts.end() && over->second.material.color) {
+    color = &*over->second.material.color;
+  }
+  static const Material standard;
+  const auto& [r, g, b] = color ? *color : standard.color;
+  return (LinearOf(r) + LinearOf(g) + LinearOf(b)) / 3.0;
+}
 
 } // namespace
 
@@ -30,7 +50,7 @@ Methods MethodsOf(const v1::Measuring& measuring, const std::string& command) {
 
 MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measuring,
                              const google::protobuf::RepeatedField<std::uint32_t>& without,
-                             const std::string& command)
+                             const std::string& command, RayTrees* trees)
     : Context_(context) {
   Scene& scene = context.GetScene();
   std::set<std::string> hidden;
@@ -45,6 +65,9 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
     const Deadline deadline(measuring.deadline_s(), command, "fewer lines or azimuths");
     this->Obstacles_.SetCheck([deadline] { deadline.Check(); });
   }
+  if (trees) {
+    trees->Begin();
+  }
   for (const auto& [id, object] : scene.Objects()) {
     const bool counts = object.nature == Nature::Physical && object.visible &&
                         scene.Fragments().Get(object.fragment).visible &&
@@ -56,10 +79,10 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
       if (!measuring.no_terrain()) {
         this->Ids_.insert(id);
         this->Obstacles_.Add(Obstacles::Ground{terrain->Name(), &terrain->Surface(),
-                                               context.Frames().WorldPose(object.frame)});
+                                               context.Frames().WorldPose(object.frame), id});
       }
     } else if (!measuring.no_objects()) {
-      this->AddObject(context, object);
+      this->AddObject(context, object, trees);
     }
   }
 }
@@ -84,17 +107,20 @@ MeasuredScene::PartsOf(const Context& context, const GraphicsObject& object, boo
       *any = true;
     }
     if (shown && finest && !object.billboard) {
-      parts.push_back({part.name, part.mesh, X_RO * part.X_OP});
+      parts.push_back({part.name, part.mesh, X_RO * part.X_OP, AlbedoOf(object, part)});
     }
   }
   return parts;
 }
 
-void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object) {
+void MeasuredScene::AddObject(const Context& context, const GraphicsObject& object,
+                              RayTrees* trees) {
   bool any = false;
   for (const ShownPart& part : PartsOf(context, object, &any)) {
     this->Ids_.insert(object.id);
-    this->Obstacles_.Add(object.id, std::make_shared<MeshRays>(part.mesh), part.X_RM);
+    this->Obstacles_.Add(object.id,
+                         trees ? trees->Of(part.mesh) : std::make_shared<const MeshRays>(part.mesh),
+                         part.X_RM, part.albedo);
   }
   if (!any && !(object.custom && object.custom->IsBackdrop())) {
     context.reply.add_warning("object '" + object.name +

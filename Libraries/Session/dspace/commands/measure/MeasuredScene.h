@@ -12,6 +12,7 @@
 
 #include <google/protobuf/repeated_field.h>
 
+#include <dspace/commands/measure/RayTrees.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/measure/HorizonScan.h>
 #include <dspace/measure/Obstacles.h>
@@ -32,16 +33,17 @@ public:
 
   // Physical objects and terrains that the scene shows, without the `without` and hidden ones.
   // Physical objects without triangles are named in warnings of the reply. Throws
-  // Error(NotFound) for an unknown fragment or object.
+  // Error(NotFound) for an unknown fragment or object. `trees`: those of meshes, if they are kept.
   MeasuredScene(const Context& context, const v1::Measuring& measuring,
                 const google::protobuf::RepeatedField<std::uint32_t>& without,
-                const std::string& command);
+                const std::string& command, RayTrees* trees = nullptr);
 
   // Triangles of an object that the scene shows, at their finest level.
   struct ShownPart {
     std::string name;
     std::shared_ptr<const Mesh> mesh;
     Eigen::Affine3d X_RM = Eigen::Affine3d::Identity();
+    double albedo = 0.0; // mean of its material's linear red, green and blue
   };
   // `any`, if given: whether it has triangles, shown or not.
   static std::vector<ShownPart> PartsOf(const Context& context, const GraphicsObject& object,
@@ -64,7 +66,7 @@ public:
 private:
   // The terrain whose north a place has, and its pose; null: none.
   std::pair<const TerrainSurface*, Pose> GroundOf(const Spot& spot) const;
-  void AddObject(const Context& context, const GraphicsObject& object);
+  void AddObject(const Context& context, const GraphicsObject& object, RayTrees* trees);
 
   const Context& Context_;
   Obstacles Obstacles_;

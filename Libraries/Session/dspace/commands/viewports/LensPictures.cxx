@@ -22,6 +22,7 @@ CaptureRequest ToRequest(const LensPictures::Request& from, bool depth) {
   request.incidence = from.wishes.incidence;
   request.emission = from.wishes.emission;
   request.phase = from.wishes.phase;
+  request.normal = from.wishes.normal;
   request.physicalOnly = !from.ornaments;
   request.hiddenFragments = from.hiddenFragments;
   return request;
@@ -38,6 +39,7 @@ std::shared_ptr<LensPlanes> ToPlanes(dspace::Capture&& from) {
   to->incidence = std::move(from.incidence);
   to->emission = std::move(from.emission);
   to->phase = std::move(from.phase);
+  to->normal = std::move(from.normal);
   return to;
 }
 

@@ -75,8 +75,10 @@ void ViewportCommands::Simulate(const Context& context, v1::SimulateImage& comma
   wishes.incidence = command.incidence();
   wishes.emission = command.emission();
   wishes.phase = command.phase();
+  wishes.normal = command.normal();
   RequirePlane(wishes.radiance || wishes.depth || wishes.range || wishes.label ||
-                   wishes.litFraction || wishes.incidence || wishes.emission || wishes.phase,
+                   wishes.litFraction || wishes.incidence || wishes.emission || wishes.phase ||
+                   wishes.normal,
                label);
   for (const std::string& fragment : command.hidden_fragment()) {
     context.GetScene().Fragments().Get(fragment); // throws where there is none
@@ -117,6 +119,7 @@ void ViewportCommands::Simulate(const Context& context, v1::SimulateImage& comma
   taken.incidence = std::move(result.planes.incidence);
   taken.emission = std::move(result.planes.emission);
   taken.phase = std::move(result.planes.phase);
+  taken.normal = std::move(result.planes.normal);
   this->PutCapture(context, command.inline_data());
   v1::LensPicture* lens = context.reply.mutable_capture()->mutable_lens();
   lens->set_image_width(std::uint32_t(request.lens.model.width));

@@ -192,6 +192,7 @@ void ViewportCommands::PutCapture(const Context& context, bool data) {
   AddPlane(reply, "incidence", v1::Plane::FLOAT32, 1, taken.incidence, data);
   AddPlane(reply, "emission", v1::Plane::FLOAT32, 1, taken.emission, data);
   AddPlane(reply, "phase", v1::Plane::FLOAT32, 1, taken.phase, data);
+  AddPlane(reply, "normal", v1::Plane::FLOAT32, 3, taken.normal, data);
 }
 
 void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
