@@ -455,8 +455,8 @@ TEST(Fallbacks, WhatStandsInForAKernelIsNamed) {
   ephemeris.Load(std::make_shared<Straight>("other", 9, State{}, 0, 0.0, 1000.0));
   EXPECT_TRUE(warnings(900.0).empty());
   EXPECT_EQ(warnings(1100.0),
-            std::vector<std::string>{"body 7 is taken from plain (10 m off), since kernel does not "
-                                     "cover the time"});
+            std::vector<std::string>{"body URANUS BARYCENTER is taken from plain (10 m off), since "
+                                     "kernel does not cover the time"});
   EXPECT_EQ(ephemeris.Explain({7, 0}, 1100.0)[0].warning, warnings(1100.0)[0]);
   ephemeris.Unload("kernel");
   EXPECT_TRUE(warnings(1100.0).empty());

@@ -189,17 +189,13 @@ std::string Ephemeris::WarningOf(int body, std::size_t source) const {
   const StateSource& used = *this->Sources_[source];
   std::string warning = used.Warning(body);
   const std::size_t first = this->ByBody_.at(body).front();
-  if (source < this->First_ || first >= this->First_) {
+  if (!warning.empty() || source < this->First_ || first >= this->First_) {
     return warning;
   }
   const std::string accuracy = used.Accuracy(body);
-  const std::string& kernel = this->Sources_[first]->Name();
-  if (!warning.empty()) {
-    return warning + "; " + kernel + " does not cover the time";
-  }
   return "body " + this->Names_.NameOf(body) + " is taken from " + used.Name() +
-         (accuracy.empty() ? "" : " (" + accuracy + ")") + ", since " + kernel +
-         " does not cover the time";
+         (accuracy.empty() ? "" : " (" + accuracy + ")") + ", since " +
+         this->Sources_[first]->Name() + " does not cover the time";
 }
 
 State Ephemeris::AxesJ2000(const StateSource::Link& link, double tdb) const {
