@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -50,6 +51,23 @@ public:
   posix_spawnattr_t Attributes;
 };
 
+// With large pages for the heap: each child begins without memory, and large models spend much of
+// their time on its first use.
+std::vector<char*> Environment() {
+  static char pages[] = "GLIBC_TUNABLES=glibc.malloc.hugetlb=1";
+  std::vector<char*> variables;
+  bool given = false;
+  for (char** variable = environ; variable && *variable; ++variable) {
+    variables.push_back(*variable);
+    given = given || std::strncmp(*variable, "GLIBC_TUNABLES=", 15) == 0;
+  }
+  if (!given) {
+    variables.push_back(pages);
+  }
+  variables.push_back(nullptr);
+  return variables;
+}
+
 pid_t Spawn(const std::string& program, int socket) {
   SpawnSettings settings;
   posix_spawn_file_actions_addopen(&settings.Actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
@@ -70,8 +88,9 @@ pid_t Spawn(const std::string& program, int socket) {
   std::string name = program;
   char* arguments[] = {name.data(), nullptr};
   pid_t process = -1;
+  std::vector<char*> environment = Environment();
   const int failure = posix_spawn(&process, program.c_str(), &settings.Actions,
-                                  &settings.Attributes, arguments, environ);
+                                  &settings.Attributes, arguments, environment.data());
   if (failure != 0) {
     throw Error(Error::Kind::Internal, "program '" + program + "'",
                 "cannot be started: " + std::generic_category().message(failure) +
