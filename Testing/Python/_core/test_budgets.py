@@ -132,3 +132,17 @@ def test_limit_of_a_server_that_is_none_is_rejected(tmp_path):
                               text=True, timeout=60)
         assert done.returncode == 1 and len(done.stderr.splitlines()) == 1
         assert any(word in done.stderr for word in part.split("|"))
+
+
+def test_server_rejects_a_command_of_too_many_elements(tmp_path):
+    """Before it is parsed: 60 MB of empty messages would take gigabytes."""
+    from dspace.proto import commands_pb2 as pb
+    with Served(tmp_path, "--limit", "message_elements=1000") as served, dspace.connect(served.address) as session:
+        scene = session.scene()
+        command = pb.Command()
+        for _ in range(2000):
+            command.set_text_table.row.add()
+        with pytest.raises(dspace.Resource, match="too many elements; the limit message_elements is 1000"):
+            session.execute(command)
+        scene.add_frame("after")
+        assert list(scene.frames) == ["after"]
