@@ -73,8 +73,8 @@ TEST_F(ObjectCommands, UnnamedObjectsTakeTheLowestFreeNumber) {
   for (auto set : {&v1::Vector3::set_x, &v1::Vector3::set_y, &v1::Vector3::set_z}) {
     (bad.mutable_create_primitive()->mutable_box()->mutable_size()->*set)(1.0);
   }
-  bad.mutable_create_primitive()->mutable_object()->mutable_material()->set_opacity(2.0);
-  this->Reject(bad, Kind::INVALID_ARGUMENT, "box 8");
+  bad.mutable_create_primitive()->mutable_object()->set_fragment("none");
+  this->Reject(bad, Kind::NOT_FOUND, "box 8");
   const FrameId frame = this->AddFrame("frame");
   EXPECT_EQ(made(frame), "box 8");
   EXPECT_EQ(made(), "box 9");

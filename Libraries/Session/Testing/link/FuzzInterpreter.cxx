@@ -127,7 +127,7 @@ public:
   }
 
   session::Interpreter Interpreter;
-  session::Ledger Ledger;
+  session::Ledger Ledger{&Interpreter.GetState()};
 };
 
 template<class Made> void RequireParsed(const Made& message, const v1::Command& about) {
