@@ -74,7 +74,7 @@ TEST_F(ObjectCommands, UnnamedObjectsTakeTheLowestFreeNumber) {
     (bad.mutable_create_primitive()->mutable_box()->mutable_size()->*set)(1.0);
   }
   bad.mutable_create_primitive()->mutable_object()->set_fragment("none");
-  this->Reject(bad, Kind::NOT_FOUND, "box 8");
+  this->Reject(bad, Kind::NOT_FOUND, "'none'");
   const FrameId frame = this->AddFrame("frame");
   EXPECT_EQ(made(frame), "box 8");
   EXPECT_EQ(made(), "box 9");

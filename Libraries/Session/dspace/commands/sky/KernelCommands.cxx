@@ -88,6 +88,9 @@ void LoadKernels(const Context& context, v1::LoadKernels& command) {
   }
   std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
   for (std::string& path : *command.mutable_path()) {
+    if (path.empty()) {
+      Reject("command load_kernels", "a path is empty; accepted: the path of a file");
+    }
     path = std::filesystem::absolute(path).lexically_normal().string();
     kernels = kernels->With(path);
   }
