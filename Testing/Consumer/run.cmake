@@ -13,8 +13,7 @@ function(step)
 endfunction()
 
 step("${CMAKE_COMMAND}" --install "${BUILD}" --prefix "${PREFIX}")
-file(GLOB_RECURSE compiled "${PREFIX}/lib*/dspace/scene/__pycache__/scene.*.pyc"
-  "${PREFIX}/lib*/dspace/proto/__pycache__/commands_pb2.*.pyc")
+file(GLOB_RECURSE compiled "${PREFIX}/scene.cpython-*.pyc" "${PREFIX}/commands_pb2.cpython-*.pyc")
 list(LENGTH compiled count)
 if(NOT count EQUAL 2)
   message(FATAL_ERROR "the installed Python files are not compiled: ${compiled}")

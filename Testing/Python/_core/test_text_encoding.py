@@ -129,11 +129,11 @@ def test_texts_of_kernels_and_shapes(scene, tmp_path):
     assert any("a.tf" in str(each.message) and "Windows-1252" in str(each.message) for each in caught)
     assert "MAEST" in str(scene.kernels.frames)
     with pytest.raises(dspace.Corrupt, match="accepted: printable ASCII"):
-        kernel.write_bytes(b"KPL/FK\n\\begindata\nFRAME_NAME = '" + LATIN + b"'\n")
-        scene.kernels.load(str(kernel))
+        (tmp_path / "b.tf").write_bytes(b"KPL/FK\n\\begindata\nFRAME_NAME = '" + LATIN + b"'\n")
+        scene.kernels.load(str(tmp_path / "b.tf"))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        terrain = scene.add_terrain(str(tiff(tmp_path)), vertical_datum="relative")
+        terrain = scene.add_terrain(str(tiff(tmp_path)), vertical_datum="relative", mode="clipmap")
     shapes = tmp_path / "a.geojson"
     shapes.write_bytes(b'{"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"stroke": "' + LATIN +
                        b'"}, "geometry": {"type": "LineString", "coordinates": [[1, 1], [9, 9]]}}]}')

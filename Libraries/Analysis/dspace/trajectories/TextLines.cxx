@@ -42,7 +42,8 @@ TextLines::TextLines(const std::string& path) : Label_("file '" + path + "'") {
     throw Error(Error::Kind::Corrupt, this->Label_, "it is empty");
   }
   if (this->Text_.find('\0') != std::string::npos) {
-    throw Error(Error::Kind::Corrupt, this->Label_, "it has bytes of value 0, which no text has; accepted: text");
+    throw Error(Error::Kind::Corrupt, this->Label_,
+                "it has bytes of value 0, which no text has; accepted: text");
   }
   this->Text_ = ToFileText(std::move(this->Text_), this->Label_);
   if (this->Text_.compare(0, 3, "\xEF\xBB\xBF") == 0) { // the mark of UTF-8
