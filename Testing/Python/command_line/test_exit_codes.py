@@ -24,6 +24,7 @@ CASES = {
     "play": ((NONE, "--at", "x"), (NONE, "--at", "0", "--out", "/nonexistent/a")),
     "power": (("--site", "1,2", "--body", "moon", "--panel", "1", *TIMES, "--load", "x"),
               ("--site", "1,2", "--body", "vulcan", "--panel", "1", *TIMES)),
+    "scan": (("--terrain", NONE, "--site", "1,2", "--height", "x"), ("--terrain", NONE, "--site", "1,2")),
     "serve": (("--max-connections", "x"), ("--listen", "nowhere")),
     "sites": (("--terrain", NONE, "--site", "1,2", "--radius", "x", *SPAN),
               ("--terrain", NONE, "--site", "1,2", "--radius", "100", *SPAN)),

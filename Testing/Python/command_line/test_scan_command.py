@@ -67,7 +67,6 @@ def test_in_a_recording(capsys, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, text", [
-    ((), "--terrain and --recording: accepted: one of them"),
     (("--terrain", "WALL"), "--terrain: accepted: with --site"),
     (("--terrain", "WALL", "--site", "20.5,20.5", "--azimuths", "0,90"), "--azimuths '0,90': accepted: FIRST,LAST,N"),
     (("--terrain", "WALL", "--site", "20.5,20.5", "--azimuths", "0,90,0"), "with an N of 1 to 1000000"),
@@ -81,3 +80,9 @@ def test_in_a_recording(capsys, tmp_path):
 def test_rejected(capsys, wall, arguments, text):
     code, out, err = run(capsys, "scan", *(str(wall) if each == "WALL" else each for each in arguments))
     assert code == 1 and err.strip().splitlines()[-1].startswith("dspace: ") and text in err, err
+
+
+@pytest.mark.parametrize("arguments", [(), ("--terrain", "a.tif", "--recording", "b.dspace")])
+def test_a_terrain_or_a_recording_is_needed(capsys, arguments):
+    code, out, err = run(capsys, "scan", *arguments)
+    assert code == 2 and "--terrain" in err and "--recording" in err

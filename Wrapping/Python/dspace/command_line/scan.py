@@ -1,10 +1,9 @@
 """`dspace scan`: ranges of a lidar or an altimeter over terrain, or in a recorded scene."""
-import contextlib
 import pathlib
 import sys
 
 from dspace.command_line import Failed, lazy
-from dspace.command_line.measure_ground import MeasuredGround, add_ground, place_of, text_of
+from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, place_of, text_of
 
 np = lazy("numpy")
 
@@ -12,14 +11,11 @@ MOST_ANGLES = 1_000_000
 
 
 def add_arguments(parser):
-    add_ground(parser, "a file of the scan: .ply (the echoes as a point cloud) or .csv (every beam)", required=False)
+    add_ground(parser, "a file of the scan: .ply (the echoes as a point cloud) or .csv (every beam)")
     parser.add_argument("--site", metavar="LON,LAT", help="with --terrain: longitude (east) and latitude [deg] of the sensor; "
                         "map x and y without a CRS. Its axes are X east, Y north, Z up")
     parser.add_argument("--height", type=float, default=2.0, metavar="H",
                         help="with --site: above the ground [m], 0 or more (default: 2)")
-    parser.add_argument("--recording", metavar="FILE", help="in place of --terrain: a recording (.dspace)")
-    parser.add_argument("--at", type=float, metavar="T", help="with --recording: simulation time [s] (default: the end)")
-    parser.add_argument("--scene", metavar="NAME", help="with --recording: the scene (default: the recording's only one)")
     parser.add_argument("--frame", metavar="PATH", help="with --recording: the sensor's frame, with X right, Y forward, Z up; "
                         "of --model the frame in which the model's own pose is")
     parser.add_argument("--through", metavar="CAMERA", help="with --recording: the scene's camera at which the sensor is")
@@ -53,43 +49,25 @@ def add_arguments(parser):
 
 
 def run(options):
-    import dspace
-    if (options.terrain is None) == (options.recording is None):
-        raise Failed("--terrain and --recording: accepted: one of them")
-    for name, needed in (("site", "terrain"), ("at", "recording"), ("scene", "recording"), ("frame", "recording"),
-                         ("through", "recording")):
+    for name, needed in (("site", "terrain"), ("frame", "recording"), ("through", "recording")):
         if getattr(options, name) is not None and getattr(options, needed) is None:
             raise Failed(f"--{name}: accepted: with --{needed}")
+    if options.terrain is not None and (options.site is None or options.model is not None):
+        raise Failed("--terrain: accepted: with --site, and without --model")
+    if options.recording is not None and (options.frame is None) == (options.through is None):
+        raise Failed("--frame and --through: accepted: one of them")
+    place = None if options.site is None else place_of(options.site, "LON,LAT", (2,), "--site")
     out = out_of(options.out)
     sensor = sensor_of(options)
-    with contextlib.ExitStack() as stack:
-        if options.terrain is not None:
-            if options.site is None or options.model is not None:
-                raise Failed("--terrain: accepted: with --site, and without --model")
-            place = place_of(options.site, "LON,LAT", (2,), "--site")
-            ground = MeasuredGround(stack.enter_context(dspace.Session()).scene(), options)
-            scene, where = ground.scene, {"site": ground.site((*place, options.height))}
+    with opened(options) as scene:
+        if place is not None:
+            where = {"site": MeasuredGround(scene, options).site((*place, options.height))}
         else:
-            scene, where = recorded(stack, options)
+            where = {"frame": options.frame} if options.frame is not None else {"camera": options.through}
         scan = scene.scan(sensor, seed=options.seed, without=options.without, **where)
     if out is not None:
         scan.save(out)
     tell(options, out, scan)
-
-
-def recorded(stack, options):
-    """The scene of the recording, and the sensor's place in it."""
-    from dspace.playback.playback import Playback
-    if (options.frame is None) == (options.through is None):
-        raise Failed("--frame and --through: accepted: one of them")
-    playback = stack.enter_context(Playback(options.recording))
-    playback.seek(playback.times[-1] if options.at is None else options.at)
-    scenes = playback.session.scenes
-    if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
-        raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
-                     f"{', '.join(map(repr, scenes)) or 'none'}")
-    scene = next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
-    return scene, {"frame": options.frame} if options.frame is not None else {"camera": options.through}
 
 
 def out_of(name):
