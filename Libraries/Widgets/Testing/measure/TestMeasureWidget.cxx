@@ -64,9 +64,9 @@ TEST_F(MeasureWidgetTest, PointsOfAToolAreMeasuredOnceThereAreEnough) {
   this->widget.Add({4, 5, 0.1}, "ground");
   ASSERT_EQ(this->asked.count(), 1);
   EXPECT_EQ(this->Asked(0).toStdString(),
-            R"(app.measure("line", [(1.0, 2.0, 3.0), (4.0, 5.0, 0.1)], terrain="ground"))");
+            R"(app.measure("line", [(1, 2, 3), (4, 5, 0.1)], terrain="ground"))");
   this->widget.Add({7, 8, 9}, "other");
-  EXPECT_TRUE(this->Asked(1).endsWith(R"((7.0, 8.0, 9.0)], terrain="ground"))"));
+  EXPECT_TRUE(this->Asked(1).endsWith(R"((7, 8, 9)], terrain="ground"))"));
   this->widget.findChild<QPushButton*>("last")->click();
   EXPECT_EQ(this->Asked(2), this->Asked(0));
   this->widget.findChild<QPushButton*>("clear")->click();
@@ -78,7 +78,7 @@ TEST_F(MeasureWidgetTest, PointsOfAToolAreMeasuredOnceThereAreEnough) {
   }
   ASSERT_EQ(this->asked.count(), 4);
   EXPECT_EQ(this->Asked(3).toStdString(),
-            R"(app.measure("angle", [(0.0, 0.0, 0.0), (1.0, 1.0, 0.0), (2.0, 4.0, 0.0)]))");
+            R"(app.measure("angle", [(0, 0, 0), (1, 1, 0), (2, 4, 0)]))");
   EXPECT_EQ(this->widget.Points().size(), 1u);
   this->widget.findChild<QToolButton*>("tool angle")->click(); // put down
   EXPECT_EQ(this->widget.Used(), "");

@@ -24,7 +24,7 @@ protected:
     ASSERT_TRUE(Run("import numpy as np\n"
                     "slab = scene.add_box((20, 20, 0.5), name='slab', position=(0, 0, -0.25))\n"
                     "view = app.new_view()\n"
-                    "view.camera.set_orthographic(10)\n"
+                    "view.camera.set_projection(height=10)\n"
                     "view.camera.look_at(eye=(0, 0, 30), target=(0, 0, 0), up=(0, 1, 0))\n"))
         << errors.toStdString();
     ASSERT_TRUE(Run("app.show_dock('measure')")) << errors.toStdString();
@@ -78,7 +78,7 @@ TEST_F(MeasureInWindow, ClicksMeasureALineAndMarkIt) {
   EXPECT_GT(Marked(), view->height() / 3); // a line of 5 m of 10
   // The marks follow the camera: half as long from twice as high.
   const int before = Marked();
-  ASSERT_TRUE(Run("view.camera.set_orthographic(20)")) << errors.toStdString();
+  ASSERT_TRUE(Run("view.camera.set_projection(height=20)")) << errors.toStdString();
   ASSERT_TRUE(Settled());
   EXPECT_LT(Marked(), 0.75 * before);
   // Nothing is selected meanwhile, and Escape ends it.

@@ -137,7 +137,7 @@ TEST_F(TerrainInWindow, TheDockOpensNoFileAndViewHasIt) {
   }
   EXPECT_TRUE(listed);
   EXPECT_FALSE(Run("app.show_dock('nothing')"));
-  EXPECT_TRUE(errors.contains("there are: console, messages,")) << errors.toStdString();
+  EXPECT_TRUE(errors.contains("there are: console, measure, messages,")) << errors.toStdString();
 }
 
 TEST_F(TerrainInWindow, ARecordingIsShownAndNotChanged) {

@@ -53,6 +53,8 @@ public:
   // The place of the profile under the pointer; null: none.
   const Point* Pointed() const;
   QSize sizeHint() const override { return {300, 460}; }
+  // Views get the room of a small window.
+  QSize minimumSizeHint() const override { return {140, 140}; }
 
 signals:
   void measureWanted(const QString& python);

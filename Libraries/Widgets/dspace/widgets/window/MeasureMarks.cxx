@@ -83,6 +83,7 @@ MeasureMarks::MeasureMarks(MeasureWidget* widget, QObject* parent)
 void MeasureMarks::Add(ViewportWidget* view, vtkObject* of, const std::string& viewport) {
   auto* pane =
       new OverlayPane(view, [this, view](QPainter& painter) { this->Paint(painter, view); });
+  pane->setObjectName(QStringLiteral("marks"));
   this->Views_[view] = {of, viewport, pane};
   connect(view, &QObject::destroyed, this, [this](QObject* gone) { this->Views_.erase(gone); });
   this->Update();
