@@ -116,7 +116,7 @@ def salvaged_rows(path):
     from dspace.recording.file import carry_out
     out = f"{path}.salvaged"
     try:
-        carry_out("Salvage", os.fsencode(path), os.fsencode(out))
+        carry_out("Salvage", os.fsencode(path), os.fsencode(out), 0)  # 0: the default limit
     except dspace.Corrupt as error:
         assert "nothing in it can be recovered" in str(error) and not os.path.exists(out)
         return {}, {}

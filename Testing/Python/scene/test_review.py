@@ -123,8 +123,8 @@ def uses(thing, given):
         method = getattr(thing, name)
         parameters = inspect.signature(method).parameters.values() if callable(method) else ()
         needed = {p.name: given.get(p.name) for p in parameters
-                  if p.default is p.empty and p.kind is p.POSITIONAL_OR_KEYWORD}
-        keys = [p.name for p in parameters if p.kind is p.POSITIONAL_OR_KEYWORD]
+                  if p.default is p.empty and p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
+        keys = [p.name for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)]
         if name.startswith("add_") and any(p.kind is p.VAR_KEYWORD for p in parameters):
             keys += ["name", "frame", "fragment", "position", "quaternion", "stretch", "visible",
                      "color", "texture", "opacity", "lit", "line_width"]

@@ -23,7 +23,7 @@ public:
     Numbers& numbers = this->Numbers_[wanted];
     const auto name = [&wanted](std::uint64_t n) { return wanted + " " + std::to_string(n); };
     while (!numbers.freed.empty()) {
-      const std::string freed = name(*numbers.freed.begin());
+      std::string freed = name(*numbers.freed.begin());
       if (!taken(freed)) {
         return freed;
       }

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, flag, integer, items, put, put_given, reject
+from dspace._core.fields import array_of, file_path, flag, integer, items, put, put_given, real, reject
 from dspace._core.files import AtomicFile
 from dspace._core.signals import check_signals
 from dspace.cameras.image_planes import ImageState, ground_of, image_state, motion_of, points_of
@@ -18,6 +18,13 @@ PLANES = {"color": (np.uint8, (4,)), "radiance": (np.float32, (3,)), "depth": (n
           "emission": (np.float32, ()), "phase": (np.float32, ()), "normal": (np.float32, (3,))}
 UNITS = {"color": "sRGB", "radiance": "W/m^2/sr", "depth": "m", "range": "m", "incidence": "deg", "emission": "deg",
          "phase": "deg", "lit_fraction": "1", "label": "", "counts": "counts", "normal": "1"}
+
+
+def _plane_of(name, about):
+    """The name of a plane that an image file may hold."""
+    if not isinstance(name, str) or name not in (*PLANES, "counts"):
+        reject(about, "the plane", name, ", ".join(map(repr, (*PLANES, "counts"))))
+    return name
 
 
 class LensPicture(NamedTuple):
@@ -89,7 +96,7 @@ class SceneImages:
         if motion is not None and not (isinstance(motion, ImageState) and motion._scene._name_ == self._scene._name_):
             reject(about, "motion", motion, "an ImageState of this scene", WrongType)
         derived = flag(point, "point", about) or motion is not None or ground is not None or geographic is not None
-        sought = {name for name, asked in wanted.items() if asked}
+        sought = {name for name, asked in wanted.items() if flag(asked, name, about)}
         wanted["range"] = flag(range, "range", about) or derived
         wanted["label"] = flag(label, "label", about) or motion is not None
         planes = {}
@@ -129,9 +136,8 @@ class SceneImages:
         from dspace.cameras.image_file import ImageFile, format_of
         from dspace.cameras.sensor import Exposure, Sensor
         about = "simulated image"
-        counted = plane == "counts"
-        if plane not in PLANES and not counted:
-            reject(about, "the plane", plane, ", ".join(map(repr, (*PLANES, "counts"))))
+        path = file_path(path, "the path", about)
+        counted = _plane_of(plane, about) == "counts"
         if counted != isinstance(sensor, Sensor):
             reject(about, "the sensor", sensor, "a dspace.Sensor with the plane 'counts', and None without it", WrongType)
         format_of(path, np.uint16 if counted else PLANES[plane][0])
@@ -171,15 +177,21 @@ class SceneImages:
         arguments: as for simulate_image().
 
             write_image("left.png", counts, scene.image_metadata("counts", model, frame=rover, sensor=sensor))"""
+        from dspace.cameras.sensor import Sensor
+        about = "simulated image"
         scene = self._scene
+        _plane_of(plane, about)
+        self._put_camera(scene._command().simulate_image.camera, model, camera, vantage, frame, None, False, about)
+        if sensor is not None and not isinstance(sensor, Sensor):
+            reject(about, "the sensor", sensor, "a dspace.Sensor, or None", WrongType)
         if frame is not None:
-            pose = (scene.frame(frame) if isinstance(frame, str) else frame).world_pose @ model.pose
+            pose = scene._frame_of(scene._frame_id(frame)).world_pose @ model.pose
         else:
             pose = self._camera_pose(camera, vantage)
         found = {"plane": plane, "unit": UNITS.get(plane, ""), "scene": scene.name, "time_s": scene.time,
                  "pose": {"position": pose.position.tolist(), "quaternion": pose.quaternion.tolist()}}
         if plane == "color":
-            found["exposure"] = float(exposure)
+            found["exposure"] = real(exposure, "the exposure", about)
         if model is not None:
             found["camera"] = json.loads(model.json)
         if sensor is not None:

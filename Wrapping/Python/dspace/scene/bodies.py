@@ -14,6 +14,10 @@ LEVEL_SIZE = 252  # cells along a level of a clipmap: the finest, for the limb o
 _AXES = re.compile(r'(?:ELLIPSOID|SPHEROID)\["[^"]*",\s*([0-9.eE+-]+),\s*([0-9.eE+-]+)')
 
 
+def _is(value, default):
+    return isinstance(value, str) and value == default  # an array compares item by item
+
+
 class BodyFactory:
     """Adds the bodies of a Scene, which delegates to it."""
 
@@ -53,15 +57,15 @@ class BodyFactory:
         if body is not None and (not isinstance(body, str) or not body):
             reject("body", "the body", body, "a name, or None with radii", WrongType)
         label = f"body {body!r}" if body else "body"
-        if center is None and (axes is not None or correction != "NONE" or center_axes != "J2000"):
-            reject(label, "axes, center_axes or correction", axes or (center_axes, correction), "these with center")
+        if center is None and not (axes is None and _is(correction, "NONE") and _is(center_axes, "J2000")):
+            reject(label, "axes, center_axes or correction", (axes, center_axes, correction), "these with center")
         made = []  # to be removed when something is rejected
         try:
             if center is not None:
                 if body is None:
                     reject(label, "the center", center, "a center with the name of the body")
                 frame = self._scene.add_celestial_frame(
-                    settings.get("name") or body, body, axes=axes or axes_of(body), parent=settings.get("frame"),
+                    settings.get("name") or body, body, axes=axes_of(body) if axes is None else axes, parent=settings.get("frame"),
                     center=center, center_axes=center_axes, correction=correction)
                 made.append(frame)
                 settings["frame"] = frame

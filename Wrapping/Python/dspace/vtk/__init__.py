@@ -6,8 +6,9 @@ import threading
 
 
 def _libraries():
+    # Not libDspaceLink: it holds the messages, which Python must load first (below).
     folder = os.path.realpath(os.path.join(__path__[0], *4 * [".."]))
-    return [os.path.join(folder, f"libDspace{name}.so") for name in ("Elevation", "Import", "Link")]
+    return [os.path.join(folder, f"libDspace{name}.so") for name in ("Elevation", "Import")]
 
 
 def _load_libraries():
