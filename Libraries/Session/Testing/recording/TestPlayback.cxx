@@ -1,7 +1,9 @@
 // Recordings read and carried out again: against what was given to the writer, and against an
 // interpreter that was given the same commands from the start.
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <random>
 #include <sstream>
 #include <thread>
@@ -13,6 +15,7 @@
 #include <dspace/recording/RecordingWriter.h>
 
 #include "CommandTestSupport.h"
+#include "RecordingRows.h"
 
 namespace dspace::testing {
 namespace {
@@ -274,6 +277,53 @@ TEST_F(PlaybackOf, RejectsDamage) {
   this->Change("DROP TABLE meta; DROP TABLE command");
   says("without a recording's tables", Error::Kind::Unsupported,
        [&] { RecordingReader reader(this->Path_); });
+}
+
+// A search among rows that are out of order finds other snapshots than a list of them does.
+TEST_F(PlaybackOf, SnapshotsOutOfOrderEndInAnError) {
+  this->Drive(20, 4);
+  this->Change("PRAGMA journal_mode=DELETE; VACUUM");
+  std::stringstream content;
+  content << std::ifstream(this->Path_, std::ios::binary).rdbuf();
+  const std::string bytes = content.str();
+  std::size_t page = 0; // where the leaf that holds all snapshots begins
+  {
+    const Database file(this->Path_, SQLITE_OPEN_READONLY);
+    file.Ask(
+        "SELECT rootpage FROM sqlite_master WHERE name = 'snapshot'", {},
+        [&](sqlite3_stmt* row) { page = std::size_t(sqlite3_column_int64(row, 0) - 1) * 65536; });
+  }
+  ASSERT_EQ(bytes.at(page), 13) << "no leaf of a table";
+  const auto number = [&](std::size_t at) {
+    return std::size_t(std::uint8_t(bytes.at(at))) << 8 | std::uint8_t(bytes.at(at + 1));
+  };
+  const std::size_t rows = number(page + 3);
+  ASSERT_GE(rows, 6u);
+  const std::size_t first = page + 8; // two bytes a row: where its content is
+  for (std::size_t a = 0; a < rows; ++a) {
+    for (std::size_t b = a + 1; b < rows; ++b) {
+      std::string changed = bytes;
+      std::swap_ranges(changed.begin() + std::ptrdiff_t(first + 2 * a),
+                       changed.begin() + std::ptrdiff_t(first + 2 * a + 2),
+                       changed.begin() + std::ptrdiff_t(first + 2 * b));
+      std::ofstream(this->Path_, std::ios::binary) << changed;
+      try {
+        RecordingReader reader(this->Path_);
+        Interpreter shown;
+        session::Playback playback(reader, shown);
+        const auto steps = std::int64_t(playback.Steps().size());
+        for (const std::int64_t n : {steps, -steps / 2, steps / 4, -steps}) {
+          try {
+            playback.Step(n);
+          } catch (const Error& error) {
+            EXPECT_EQ(error.GetKind(), Error::Kind::Corrupt) << error.what();
+          }
+        }
+      } catch (const Error& error) {
+        EXPECT_EQ(error.GetKind(), Error::Kind::Corrupt) << error.what();
+      }
+    }
+  }
 }
 
 // Nor is a file damaged that another process holds.

@@ -163,6 +163,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
     }
   }
   std::uint64_t at = *this->At_;
+  bool stopped = false;
   if (target > at) {
     this->At_.reset(); // unknown, if one of these fails
     this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
@@ -170,9 +171,15 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
       this->Execute(std::move(row.command), "command ", row.seq);
       at = row.seq;
       this->Reached_s_ = row.time_s;
-      return !late();
+      stopped = late();
+      return !stopped;
     });
     this->At_ = at;
+  }
+  if (at != target && !stopped) { // rows out of order, or a row that is not there
+    throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
+                "no commands lead to command " + std::to_string(target) +
+                    ", at which a step ends; they end at " + std::to_string(at));
   }
   return at == target;
 }
