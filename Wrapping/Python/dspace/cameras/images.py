@@ -173,14 +173,15 @@ class SceneImages:
 
     def image_metadata(self, plane, model=None, camera=None, vantage=None, frame=None, exposure=1.0, sensor=None):
         """What a file tells about an image that simulate_image() makes: a dict for JSON, with the plane and its unit, the scene
-        and its time [s], the model, its pose in the root, and the Sensor's numbers. plane: a plane's name, or "counts". Other
+        and its time [s], the model, its pose in the root, and the Sensor's numbers. plane: a plane's name, "counts", or None: without plane and unit. Other
         arguments: as for simulate_image().
 
             write_image("left.png", counts, scene.image_metadata("counts", model, frame=rover, sensor=sensor))"""
         from dspace.cameras.sensor import Sensor
         about = "simulated image"
         scene = self._scene
-        _plane_of(plane, about)
+        if plane is not None:
+            _plane_of(plane, about)
         self._put_camera(scene._command().simulate_image.camera, model, camera, vantage, frame, None, False, about)
         if sensor is not None and not isinstance(sensor, Sensor):
             reject(about, "the sensor", sensor, "a dspace.Sensor, or None", WrongType)
@@ -188,8 +189,9 @@ class SceneImages:
             pose = scene._frame_of(scene._frame_id(frame)).world_pose @ model.pose
         else:
             pose = self._camera_pose(camera, vantage)
-        found = {"plane": plane, "unit": UNITS.get(plane, ""), "scene": scene.name, "time_s": scene.time,
-                 "pose": {"position": pose.position.tolist(), "quaternion": pose.quaternion.tolist()}}
+        found = {} if plane is None else {"plane": plane, "unit": UNITS[plane]}
+        found.update(scene=scene.name, time_s=scene.time,
+                     pose={"position": pose.position.tolist(), "quaternion": pose.quaternion.tolist()})
         if plane == "color":
             found["exposure"] = real(exposure, "the exposure", about)
         if model is not None:

@@ -119,7 +119,7 @@ class Stage:
             with open(os.path.join(folder, file), "rb") as written:
                 data = written.read()
             files[plane] = {"name": file, "bytes": len(data), "crc32": zlib.crc32(data), "unit": UNITS.get(plane, "")}
-        told = scene.image_metadata("", model, **place)
+        told = scene.image_metadata(None, model, **place)
         record = {"number": number, "time_s": time, "camera": name, "pose_number": pose, "scene": told["scene"], "pose": told["pose"],
                   "size": list(model.size), "files": files, "annotations": self.annotations(scene, picture.get("label"))}
         atomic_write(os.path.join(folder, KIND.last(number)), json.dumps(record, sort_keys=True).encode())
