@@ -173,8 +173,8 @@ class SceneImages:
 
     def image_metadata(self, plane, model=None, camera=None, vantage=None, frame=None, exposure=1.0, sensor=None):
         """What a file tells about an image that simulate_image() makes: a dict for JSON, with the plane and its unit, the scene
-        and its time [s], the model, its pose in the root, and the Sensor's numbers. plane: a plane's name, "counts", or None: without plane and unit. Other
-        arguments: as for simulate_image().
+        and its time [s], the model, its pose in the root, and the Sensor's numbers. plane: a plane's name, "counts", or
+        None (neither plane nor unit). Other arguments: as for simulate_image().
 
             write_image("left.png", counts, scene.image_metadata("counts", model, frame=rover, sensor=sensor))"""
         from dspace.cameras.sensor import Sensor
