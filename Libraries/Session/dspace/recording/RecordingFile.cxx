@@ -155,6 +155,9 @@ void RecordingFile::Open(int flags) {
 void RecordingFile::Make(std::int64_t maximumPages, int checkpointPages, bool repeated) {
   sqlite3_busy_timeout(this->Database_, 10000); // a reader that checkpoints
   this->Run("PRAGMA page_size=65536");          // a step of a thousand poses in few pages
+  // A process that is killed during the change to WAL leaves no journal, which readers could not
+  // roll back.
+  this->Run("PRAGMA journal_mode=MEMORY");
   this->Run("PRAGMA journal_mode=WAL");
   this->Run("PRAGMA synchronous=NORMAL");
   this->Run("PRAGMA cache_size=-16384");    // KiB: a transaction is written once, at its end
