@@ -442,9 +442,15 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
     }
     return may;
   };
-  this->DrawBlocks(drawing, features, camera, blocks, shaded);
   this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
                    [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
+  // Of the rest most pixels are above all casters, too. They are drawn first, by a program that reads
+  // tiles alone; the depth test then keeps the costly program from them.
+  this->DrawBlocks(drawing, features | SurfaceShaders::ClearOfCasters, camera, blocks, shaded);
+  vtkOpenGLState* state = drawing.window->GetState();
+  state->vtkglDepthFunc(GL_GREATER);
+  this->DrawBlocks(drawing, features, camera, blocks, shaded);
+  state->vtkglDepthFunc(GL_GEQUAL);
 }
 
 int ClipmapDrawer::OwnGround(const CustomDrawing& drawing) {
