@@ -444,8 +444,8 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
   };
   this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
                    [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
-  // Of the rest most pixels are above all casters, too. They are drawn first, by a program that reads
-  // tiles alone; the depth test then keeps the costly program from them.
+  // Of the rest most pixels are above all casters, too. They are drawn first, by a program that
+  // reads tiles alone; the depth test then keeps the costly program from them.
   this->DrawBlocks(drawing, features | SurfaceShaders::ClearOfCasters, camera, blocks, shaded);
   vtkOpenGLState* state = drawing.window->GetState();
   state->vtkglDepthFunc(GL_GREATER);
