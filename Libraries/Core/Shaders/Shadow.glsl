@@ -127,23 +127,18 @@ vec3 cascadeTint(vec3 positionVC)
   return tint;
 }
 
-// `planeVC`: the normal of the surface as it is drawn, of any length.
-ShadowReceiver receiverAt(vec3 positionVC, vec3 planeVC)
+// Where the view's maps reach. `planeVC`: the normal of the surface as it is drawn, of any length.
+float cascadesLit(vec3 positionVC, vec3 planeVC)
 {
   ShadowReceiver at;
   at.place = sunAxesVC * positionVC;
   vec3 n = normalize(sunAxesVC * planeVC);
   at.slope = -n.xy / max(abs(n.z), 0.02) * sign(n.z);
-  return at;
-}
-
-// Bits: the maps that may hold blockers of a place, of objects and then of each ground. `count`: how
-// many there are.
-int mapsOver(ShadowReceiver at, float depth, float steep, out int count)
-{
+  float depth = -positionVC.z;
+  float steep = length(at.slope);
   float grounds = float(shadowSize) / float(groundSize);
-  int maps = 0;
-  count = 0;
+  int maps = 0; // bits: those that may hold blockers, of objects and then of each ground
+  int count = 0;
   for (int k = 0; k < DSPACE_CASCADES; ++k)
   {
     vec4 place = shadowPlace[k];
@@ -165,26 +160,6 @@ int mapsOver(ShadowReceiver at, float depth, float steep, out int count)
     }
 #endif
   }
-  return maps;
-}
-
-// Whether some map may hold a blocker of the place.
-bool nearCasters(vec3 positionVC, vec3 planeVC)
-{
-  ShadowReceiver at = receiverAt(positionVC, planeVC);
-  int count;
-  return mapsOver(at, -positionVC.z, length(at.slope), count) != 0;
-}
-
-// Where the view's maps reach. Arguments: as receiverAt().
-float cascadesLit(vec3 positionVC, vec3 planeVC)
-{
-  ShadowReceiver at = receiverAt(positionVC, planeVC);
-  float depth = -positionVC.z;
-  float steep = length(at.slope);
-  float grounds = float(shadowSize) / float(groundSize);
-  int count;
-  int maps = mapsOver(at, depth, steep, count);
   float lit = 1.0;
   for (int i = 0; i < count; ++i)
   {
@@ -240,7 +215,7 @@ vec3 litColor(float lit)
 float sunLit(vec3 positionVC, vec3 planeVC)
 {
   float lit = 1.0;
-#if DSPACE_CASCADES > 0 && !defined(DSPACE_CLEAR_OF_CASTERS)
+#if DSPACE_CASCADES > 0
   lit = cascadesLit(positionVC, planeVC);
 #endif
 #ifdef DSPACE_LIT_MASK

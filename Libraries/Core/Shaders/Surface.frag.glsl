@@ -99,12 +99,6 @@ void main()
     discard;
   }
 #endif
-#ifdef DSPACE_CLEAR_OF_CASTERS
-  if (nearCasters(positionVC, cross(dFdx(positionVC), dFdy(positionVC))))
-  {
-    discard;
-  }
-#endif
 #ifdef DSPACE_PEEL
   if (dspacePeeled())
   {

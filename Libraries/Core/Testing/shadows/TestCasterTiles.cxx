@@ -62,7 +62,7 @@ TEST(CasterTiles, EveryPointOfACasterIsBelowTheTopOfItsTile) {
     const Eigen::Vector3d half = vector().cwiseAbs() + Eigen::Vector3d::Constant(0.01);
     const Eigen::Affine3d X_VB = Eigen::Translation3d(5.0 * vector()) *
                                  Eigen::AngleAxisd(3.0 * unit(random), vector().normalized());
-    tiles.AddBox({-half, half}, X_VB);
+    tiles.AddBox({-half, half}, X_VB.matrix().topRows<3>());
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector3d p = X_VB * half.cwiseProduct(vector());
       EXPECT_GE(double(TopAt(tiles, fit, p)) + 1e-6, fit.sun.axes.row(2).dot(p));
@@ -140,4 +140,29 @@ TEST(CasterTiles, OnlyMapsThatReachThePlaceCount) {
   fit.cascades[0].end = 5.0;
   EXPECT_FALSE(MayBeShaded(fit, tiles, place));
   EXPECT_TRUE(MayBeShaded(fit, tiles, LightHull()));
+}
+
+TEST(CasterTiles, PartsOfAMeshLeaveWhatLiesBetweenThem) {
+  const CascadeFit fit = FitAt(60.0);
+  // Two towers 12 m apart, which are one mesh.
+  const std::vector<Eigen::AlignedBox3f> towers = {
+      {Eigen::Vector3f(-6.5f, -0.5f, 0.0f), Eigen::Vector3f(-5.5f, 0.5f, 3.0f)},
+      {Eigen::Vector3f(5.5f, -0.5f, 0.0f), Eigen::Vector3f(6.5f, 0.5f, 3.0f)}};
+  LightHull mesh = BoxHull({0.0, 0.0, 1.5}, {6.5, 0.5, 1.5});
+  CasterTiles whole(fit, fit.cascades[0]);
+  whole.Add(mesh);
+  mesh.parts = &towers;
+  CasterTiles parts(fit, fit.cascades[0]);
+  parts.Add(mesh);
+  const LightHull between = Ground(1.0, 0.0, 0.5, 0.0, 0.01);
+  EXPECT_TRUE(whole.Shade(between));
+  EXPECT_FALSE(parts.Shade(between));
+  EXPECT_TRUE(parts.Shade(Ground(-7.0, 0.0, 0.5, 0.0, 0.01))); // the shadow falls to -X
+  EXPECT_TRUE(parts.Shade(Ground(5.0, 0.0, 0.5, 0.0, 0.01)));
+  // Nor does it throw a shadow on what is between them alone.
+  CasterTiles receivers(fit, fit.cascades[0]);
+  receivers.Add(between);
+  EXPECT_FALSE(receivers.TakeShadows(mesh, 0.0));
+  mesh.parts = nullptr;
+  EXPECT_TRUE(receivers.TakeShadows(mesh, 0.0));
 }

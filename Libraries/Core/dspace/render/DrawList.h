@@ -131,6 +131,8 @@ struct DrawView {
   // Clip from view coordinates in place of the projection's, for pictures that a light sees: levels
   // and poses remain those of the camera.
   std::optional<Eigen::Matrix4d> clip;
+  // With `clip`: which parts of ground the picture needs; empty: all.
+  std::function<bool(const LightHull&)> takes;
   std::optional<CascadeFit> shadows; // of the Sun's maps, where they are drawn
   std::shared_ptr<const std::vector<CasterTiles>> shadowTiles; // of all but ground, with `shadows`
   std::shared_ptr<const std::vector<ShadowGround>> shadowGrounds; // layer by layer, with `shadows`

@@ -4,6 +4,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/render/DrawList.h>
+#include <dspace/render/shadows/CasterParts.h>
 
 namespace dspace {
 namespace {
@@ -121,6 +122,7 @@ const GpuMesh& GpuStore::MeshOf(const std::shared_ptr<const Mesh>& mesh) {
   for (const Vertex& vertex : vertices) {
     gpu.bounds.extend(Eigen::Map<const Eigen::Vector3f>(vertex.position));
   }
+  gpu.parts = PartsOf(*mesh);
   gpu.bytes = vertices.size() * sizeof(Vertex) + mesh->indices.size() * sizeof(std::uint32_t);
   this->Statistics_.meshBytes += gpu.bytes;
   this->Statistics_.meshBytesUploaded += gpu.bytes;

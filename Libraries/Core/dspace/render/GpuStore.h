@@ -24,7 +24,8 @@ struct GpuMesh {
   int indexCount = 0;
   std::uint64_t bytes = 0;
   bool hasColors = false;
-  Eigen::AlignedBox3f bounds; // of the positions
+  Eigen::AlignedBox3f bounds;             // of the positions
+  std::vector<Eigen::AlignedBox3f> parts; // PartsOf(mesh)
 };
 
 // Every function needs the context that the store was first used with to be current.

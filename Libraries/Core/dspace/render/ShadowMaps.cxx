@@ -32,10 +32,22 @@ public:
         nearest = std::min(nearest, -point.z() - hull.radius);
         farthest = std::max(farthest, -point.z() + hull.radius);
       }
-      if (hull.points.empty() || nearest <= end) {
+      if (hull.points.empty()) {
         this->All_.Add(hull);
-        if (further && (hull.points.empty() || farthest > before)) {
+        if (further) {
           this->Beyond_.Add(hull);
+        }
+      } else if (!this->All_.InParts(hull)) {
+        this->AddWithin(nearest, farthest, end, further ? before : 1e300,
+                        [&](CasterTiles& tiles) { tiles.Add(hull); });
+      } else {
+        for (const Eigen::AlignedBox3f& part : *hull.parts) {
+          const Eigen::AlignedBox3d box = part.cast<double>();
+          const auto row = hull.X_VM.row(2);
+          const double middle = -row.dot(box.center().homogeneous());
+          const double half = 0.5 * row.head<3>().cwiseAbs().dot(box.sizes());
+          this->AddWithin(middle - half, middle + half, end, further ? before : 1e300,
+                          [&](CasterTiles& tiles) { tiles.AddBox(box, hull.X_VM); });
         }
       }
     }
@@ -47,6 +59,17 @@ public:
   std::array<int, 4> Texels() const { return this->All_.Texels(); }
 
 private:
+  // What is from `nearest` to `farthest` before the camera [m].
+  template<class AddTo>
+  void AddWithin(double nearest, double farthest, double end, double before, const AddTo& addTo) {
+    if (nearest <= end) {
+      addTo(this->All_);
+      if (farthest > before) {
+        addTo(this->Beyond_);
+      }
+    }
+  }
+
   CasterTiles Beyond_;
   CasterTiles All_;
   double Beginning_ = 0.0; // [m]
@@ -121,13 +144,16 @@ LightHull ShadowMaps::HullOf(const DrawBatch& batch, const DrawInstance& instanc
   if (batch.shader) { // it may move vertices
     return hull;
   }
-  const Eigen::AlignedBox3f& bounds = this->Store_.MeshOf(batch.mesh).bounds;
+  const GpuMesh& mesh = this->Store_.MeshOf(batch.mesh);
+  const Eigen::AlignedBox3f& bounds = mesh.bounds;
   const Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> X_VM(
       instance.viewFromMesh.data());
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3f corner = bounds.corner(Eigen::AlignedBox3f::CornerType(i));
     hull.points.emplace_back((X_VM * corner.homogeneous()).cast<double>());
   }
+  hull.parts = &mesh.parts;
+  hull.X_VM = X_VM.cast<double>();
   return hull;
 }
 
@@ -268,7 +294,9 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
         }
         this->UploadTiles(casting, count * (1 + ground) + k);
         if (!casting.Empty()) {
+          map.takes = [&near](const LightHull& hull) { return near.Take(hull); };
           this->DrawMap(list, map, near.Texels(), fit, k, ground, painter);
+          map.takes = {};
         }
         (*grounds)[std::size_t(ground)].tiles.push_back(std::move(casting));
       }

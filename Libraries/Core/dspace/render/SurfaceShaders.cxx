@@ -179,7 +179,6 @@ SurfaceShaders::Sources SurfaceShaders::SourcesFor(Features features, const Shad
   define(Angles, "DSPACE_ANGLES");
   define(DisplayColor, "DSPACE_DISPLAY_COLOR");
   define(LitMask, "DSPACE_LIT_MASK");
-  define(ClearOfCasters, "DSPACE_CLEAR_OF_CASTERS");
   if (features & Eclipses) {
     defines += "#define DSPACE_ECLIPSES " + std::to_string(MaximumEclipsing) + "\n";
   }

@@ -65,8 +65,6 @@ public:
   static constexpr Features Eclipses = Features(1) << 32; // bodies may hide the Sun, with SunPlace
   static constexpr Features Planes =
       Features(1) << 33; // with Lit alone: what SunMask() reads, in place of the colour
-  static constexpr Features ClearOfCasters =
-      Features(1) << 34; // discards places of which some map may hold a blocker; the rest is lit
   static constexpr unsigned LightShift = 16;       // above the features: the number of lights,
   static constexpr unsigned CascadeShift = 20;     // of the Sun's shadow maps,
   static constexpr unsigned ReflectanceShift = 24; // the photometric model, 3 bits,

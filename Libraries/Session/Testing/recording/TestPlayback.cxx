@@ -281,7 +281,7 @@ TEST_F(PlaybackOf, RejectsDamage) {
 
 // A search among rows that are out of order finds other snapshots than a list of them does.
 TEST_F(PlaybackOf, SnapshotsOutOfOrderEndInAnError) {
-  this->Drive(20, 4);
+  this->Drive(40, 4);
   this->Change("PRAGMA journal_mode=DELETE; VACUUM");
   std::stringstream content;
   content << std::ifstream(this->Path_, std::ios::binary).rdbuf();
@@ -298,7 +298,7 @@ TEST_F(PlaybackOf, SnapshotsOutOfOrderEndInAnError) {
     return std::size_t(std::uint8_t(bytes.at(at))) << 8 | std::uint8_t(bytes.at(at + 1));
   };
   const std::size_t rows = number(page + 3);
-  ASSERT_GE(rows, 6u);
+  ASSERT_GE(rows, 4u);
   const std::size_t first = page + 8; // two bytes a row: where its content is
   for (std::size_t a = 0; a < rows; ++a) {
     for (std::size_t b = a + 1; b < rows; ++b) {

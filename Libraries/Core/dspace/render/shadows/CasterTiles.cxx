@@ -133,20 +133,28 @@ void CasterTiles::Add(const Extent& extent) {
 void CasterTiles::Add(const LightHull& hull) {
   if (hull.points.empty()) {
     this->AddEverywhere();
-  } else {
+  } else if (!this->InParts(hull)) {
     this->Add(this->ExtentOf(hull));
+  } else {
+    for (const Eigen::AlignedBox3f& part : *hull.parts) {
+      this->AddBox(part.cast<double>(), hull.X_VM);
+    }
   }
 }
 
-void CasterTiles::AddBox(const Eigen::AlignedBox3d& box, const Eigen::Affine3d& X_VB) {
-  if (box.isEmpty()) {
-    return;
-  }
-  const Eigen::Vector3d center = this->Axes_ * (X_VB * box.center());
-  const Eigen::Vector3d half = (this->Axes_ * X_VB.linear()).cwiseAbs() * (0.5 * box.sizes());
+CasterTiles::Extent CasterTiles::ExtentOf(const Eigen::AlignedBox3d& box,
+                                          const Eigen::Matrix<double, 3, 4>& X_VB) const {
+  const Eigen::Vector3d center = this->Axes_ * (X_VB * box.center().homogeneous());
+  const Eigen::Vector3d half = (this->Axes_ * X_VB.leftCols<3>()).cwiseAbs() * (0.5 * box.sizes());
   Extent extent;
   extent.box = Eigen::AlignedBox3d(center - half, center + half);
-  this->Add(extent);
+  return extent;
+}
+
+void CasterTiles::AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) {
+  if (!box.isEmpty()) {
+    this->Add(this->ExtentOf(box, X_VB));
+  }
 }
 
 void CasterTiles::AddEverywhere() {
@@ -155,11 +163,20 @@ void CasterTiles::AddEverywhere() {
   this->Tiles_ = {0, 0, Side, Side};
 }
 
-bool CasterTiles::Shade(const LightHull& place) const {
-  if (place.points.empty()) {
-    return !this->Empty();
+bool CasterTiles::InParts(const LightHull& hull) const {
+  constexpr int Few = 9; // tiles
+  if (!hull.parts || hull.parts->empty()) {
+    return false;
   }
-  const Extent extent = this->ExtentOf(place);
+  const auto tiles = this->TilesOf(this->ExtentOf(hull).box, Margin * this->Texel_);
+  return tiles && ((*tiles)[2] - (*tiles)[0]) * ((*tiles)[3] - (*tiles)[1]) > Few;
+}
+
+bool CasterTiles::Shade(const LightHull& place) const {
+  return place.points.empty() ? !this->Empty() : this->Shade(this->ExtentOf(place));
+}
+
+bool CasterTiles::Shade(const Extent& extent) const {
   const auto tiles = this->TilesOf(extent.box, 0.0);
   if (!tiles) {
     return false;
@@ -184,7 +201,17 @@ bool CasterTiles::TakeShadows(const LightHull& caster, double above) const {
   if (caster.points.empty()) {
     return !this->Empty();
   }
-  const Extent extent = this->ExtentOf(caster);
+  if (!this->TakeShadows(this->ExtentOf(caster), above)) {
+    return false;
+  }
+  return !this->InParts(caster) ||
+         std::any_of(
+             caster.parts->begin(), caster.parts->end(), [&](const Eigen::AlignedBox3f& part) {
+               return this->TakeShadows(this->ExtentOf(part.cast<double>(), caster.X_VM), above);
+             });
+}
+
+bool CasterTiles::TakeShadows(const Extent& extent, double above) const {
   const auto tiles = this->TilesOf(extent.box, 0.0);
   if (!tiles) {
     return false;

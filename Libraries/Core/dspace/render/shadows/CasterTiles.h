@@ -19,6 +19,10 @@ struct LightHull {
   double radius = 0.0;
   std::optional<Eigen::Vector4d> floor;
   std::optional<Eigen::Vector4d> ceiling;
+  // Boxes in axes of its own that hold it (CasterParts.h), and how those stand in the view; null or
+  // none: unknown.
+  const std::vector<Eigen::AlignedBox3f>* parts = nullptr;
+  Eigen::Matrix<double, 3, 4> X_VM = Eigen::Matrix<double, 3, 4>::Identity();
 };
 
 // A coarse grid over one map. Each tile knows how high things reach towards the Sun that may be in
@@ -37,8 +41,10 @@ public:
 
   void Add(const LightHull& hull);
   // A box in its own axes, and where it stands in the view [m].
-  void AddBox(const Eigen::AlignedBox3d& box, const Eigen::Affine3d& X_VB);
+  void AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB);
   void AddEverywhere(); // of what has no known bounds
+  // Whether a hull lies in so many tiles that its parts, if it has any, are taken one by one.
+  bool InParts(const LightHull& hull) const;
 
   // Whether casters of these tiles may throw shadows on the place.
   bool Shade(const LightHull& place) const;
@@ -63,6 +69,9 @@ private:
     std::vector<Eigen::Vector3d> sides; // outside where x U + y V > z for any
   };
   Extent ExtentOf(const LightHull& hull) const;
+  Extent ExtentOf(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) const;
+  bool Shade(const Extent& place) const;
+  bool TakeShadows(const Extent& caster, double above) const;
   void Add(const Extent& extent);
   // Of tiles, with `room` [m] beside the range: first U, first V, last U, last V, the last not
   // among them; none: beside the map.

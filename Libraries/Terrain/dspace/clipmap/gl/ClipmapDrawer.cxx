@@ -428,7 +428,9 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
   const DrawView& view = drawing.view;
   const bool maps = (features & SurfaceShaders::Lit) != 0 && view.shadows && view.shadowTiles;
   if (!maps || view.look.shadows.cascadeColors || view.look.shadows.litColors) {
-    this->DrawBlocks(drawing, features, camera, blocks, [](const auto&) { return true; });
+    this->DrawBlocks(drawing, features, camera, blocks, [&](const ClipmapBlocks::Block& block) {
+      return !view.takes || view.takes(HullOf(camera, block.bounds));
+    });
     return;
   }
   // Most ground is near no caster: its program reads no maps.
@@ -442,15 +444,9 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
     }
     return may;
   };
+  this->DrawBlocks(drawing, features, camera, blocks, shaded);
   this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
                    [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
-  // Of the rest most pixels are above all casters, too. They are drawn first, by a program that
-  // reads tiles alone; the depth test then keeps the costly program from them.
-  this->DrawBlocks(drawing, features | SurfaceShaders::ClearOfCasters, camera, blocks, shaded);
-  vtkOpenGLState* state = drawing.window->GetState();
-  state->vtkglDepthFunc(GL_GREATER);
-  this->DrawBlocks(drawing, features, camera, blocks, shaded);
-  state->vtkglDepthFunc(GL_GEQUAL);
 }
 
 int ClipmapDrawer::OwnGround(const CustomDrawing& drawing) {
