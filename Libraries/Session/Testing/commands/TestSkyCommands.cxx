@@ -183,6 +183,19 @@ TEST_F(SkyCommands, TheSunFollows) {
   this->Give("set_sun { sun { radius_deg: 1 } }");
 }
 
+TEST_F(SkyCommands, WithoutItsLightTheSunFollowsNoMore) {
+  this->AddMoon();
+  this->Give("set_sun_motion { frame: 11 }");
+  this->Give(R"(remove_light { name: "sun" })");
+  this->Give("set_time { time_s: 8.4e8 }");
+  EXPECT_TRUE(this->TheScene().Fragments().Lights().empty());
+  Interpreter other;
+  for (v1::Command command : this->Ledger_.Commands()) {
+    ASSERT_FALSE(other.Execute(command).has_error());
+  }
+  EXPECT_TRUE(other.FindScene("scene")->Fragments().Lights().empty());
+}
+
 TEST_F(SkyCommands, RejectsAndChangesNothing) {
   this->AddMoon();
   const Pose before = this->PoseOf(10);

@@ -4,6 +4,7 @@
 
 #include <dspace/FrameTree.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/scene/Light.h>
 
 namespace dspace::session {
 namespace {
@@ -49,6 +50,11 @@ bool LedgerSky::Add(const v1::Command& command) {
       this->Sun_ = command.set_sun_motion();
     }
     return true;
+  case C::kRemoveLight:
+    if (command.remove_light().name() == SunName) {
+      this->Sun_.reset();
+    }
+    return false; // the light itself is stored elsewhere
   case C::kSetTime: {
     const v1::SkyStep& step = command.set_time().sky();
     for (int i = 0; i < step.frame_size(); ++i) {

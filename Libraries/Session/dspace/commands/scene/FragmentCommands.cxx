@@ -60,6 +60,9 @@ void RemoveLight(const Context& context, v1::RemoveLight& command) {
     return;
   }
   context.GetScene().RemoveLight(command.name());
+  if (command.name() == SunName) {
+    context.scene->sky.sun.reset(); // else the next time would create the light again
+  }
 }
 
 void ListLights(const Context& context, v1::ListLights&) {
