@@ -9,6 +9,7 @@ from dspace._core.fields import array_of, file_path, flag, integer, items, put, 
 from dspace._core.files import AtomicFile
 from dspace._core.signals import check_signals
 from dspace.cameras.image_planes import ImageState, ground_of, image_state, motion_of, points_of
+from dspace.cameras.line_scan import scanned_image
 from dspace.cameras.model import put_model
 from dspace.cameras.shutter import exposed_image
 from dspace.errors import WrongType
@@ -147,6 +148,19 @@ class SceneImages:
                       phase=phase, normal=normal)
         return exposed_image(self, shutter, at, color, radiance, planes, model, camera, vantage, frame, size, scale, samples,
                              exposure, ornaments, hide, tile, progress)
+
+    def simulate_lines(self, model, frame, at=None, color=True, radiance=False, depth=False, range=False, label=False,
+                       lit_fraction=False, incidence=False, emission=False, phase=False, normal=False, samples=2, exposure=1.0,
+                       ornaments=False, hide=(), progress=None):
+        """The image of a push-broom camera: a dict of planes (h, w, ...), as of simulate_image(), each line from its own pose.
+
+        model: a CameraModel of type line_scan, at least 3 pixels wide; its poses are in `frame`, such as the body's fixed axes for
+        a USGS ISD. at: a function that puts the scene where it is when a line is taken, by the line's number from 0; None: the
+        scene stands still. The camera's own motion is the model's. Lines before the first and after the last pose are black, 0,
+        +infinity or NaN. Other arguments: as for simulate_image(). One picture of a row is drawn for each line."""
+        planes = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
+                      incidence=incidence, emission=emission, phase=phase, normal=normal)
+        return scanned_image(self, model, at, frame, planes, samples, exposure, ornaments, hide, progress)
 
     def save_image(self, path, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, plane="color",
                    sensor=None, seed=0, number=0, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
