@@ -127,7 +127,7 @@ def application_dark():
 RECORD = """
 import math, sys
 import dspace
-from dspace.application.demo import shipped_data
+from dspace.shipped.data import shipped_data
 data = shipped_data()
 with dspace.Session() as session, session.record(sys.argv[1]):
     scene = session.scene()

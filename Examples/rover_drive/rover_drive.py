@@ -16,10 +16,10 @@ import dspace
 from dspace._core.files import atomic_write
 from dspace.movies.encode import Encoder
 from dspace.rover import Path, load_vehicle
+from dspace.shipped.field import add_field, floor_of_ruts, roll
 from dspace.links.serving import ServerProcess
 
 from movie import save_image, tile
-from shipped_field import add_field, floor_of_ruts, roll
 from vehicle import Ground, PlacedVehicle
 from views import Views
 

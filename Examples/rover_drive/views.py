@@ -2,8 +2,7 @@
 import numpy as np
 
 from dspace import Pose
-
-from shipped_field import LIGHT, SUN
+from dspace.shipped.field import LIGHT, SUN
 
 SKY = (0.03, 0.035, 0.05)
 HAZE = (0.16, 0.15, 0.14)

@@ -157,7 +157,7 @@ def test_small_craters_follow_the_law_of_the_fields(heights):
 def drive():
     import dspace
     from dspace.rover import Path as Route, load_vehicle
-    from shipped_field import add_field, floor_of_ruts
+    from dspace.shipped.field import add_field, floor_of_ruts
     with dspace.Session() as session:
         terrain = add_field(session.scene(), FIELD)
         way = Route(json.loads((FIELD / "route.json").read_text())["way_points_m"], speed=1.5, ramp=1.0)
@@ -174,7 +174,7 @@ def test_no_rock_lies_in_the_lane(drive, rocks):
 
 
 def test_wheels_stand_in_their_ruts_to_a_centimetre(drive):
-    from shipped_field import SINKAGE, TREAD, roll
+    from dspace.shipped.field import SINKAGE, TREAD, roll
     terrain, vehicle, states, _ = drive
     terrain.clear_tracks()
     worst = 0.0

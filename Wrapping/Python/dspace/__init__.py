@@ -23,6 +23,7 @@ import importlib
 _HOMES = {
     "Assembly": "objects.assemblies",
     "Camera": "cameras.camera", "CameraModel": "cameras.model", "ImageState": "cameras.image_planes", "Sensor": "cameras.sensor",
+    "Shutter": "cameras.shutter",
     "StereoPair": "cameras.stereo", "Vantage": "cameras.vantage",
     "Error": "errors", "InvalidArgument": "errors", "WrongType": "errors", "NotFound": "errors",
     "AlreadyExists": "errors", "Unsupported": "errors", "Unimplemented": "errors", "Corrupt": "errors", "Io": "errors",

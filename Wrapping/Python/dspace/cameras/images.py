@@ -9,7 +9,9 @@ from dspace._core.fields import array_of, file_path, flag, integer, items, put, 
 from dspace._core.files import AtomicFile
 from dspace._core.signals import check_signals
 from dspace.cameras.image_planes import ImageState, ground_of, image_state, motion_of, points_of
+from dspace.cameras.line_scan import scanned_image
 from dspace.cameras.model import put_model
+from dspace.cameras.shutter import exposed_image
 from dspace.errors import WrongType
 
 TILE = 512  # pixels a side, drawn between two checks for Ctrl-C
@@ -123,6 +125,43 @@ class SceneImages:
                     planes.pop(name, None)
         return {**planes, "lens": lens}
 
+    def simulate_exposure(self, shutter, at, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, color=True,
+                          radiance=False, depth=False, range=False, label=False, lit_fraction=False, incidence=False,
+                          emission=False, phase=False, normal=False, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE,
+                          progress=None):
+        """The image that a camera takes while the scene moves: motion blur, and rows that are exposed one after another. A dict
+        as of simulate_image().
+
+        shutter: a dspace.Shutter. at: a function that puts the scene, and the camera with it, where it is at a time [s]; 0 is the
+        middle of the whole image's exposure. It steps a simulation, seeks in a playback, or moves frames. It is called for each
+        instant of each band of rows, not in the order of time where the shutter rolls, and last with 0.0, also after an error or
+        Ctrl-C.
+        Radiance is the mean over the instants, summed in double precision; color is its sRGB, within a step of what
+        simulate_image() makes of such light. All other planes are those in the middle of their row's exposure. Other arguments:
+        as for simulate_image(); `size` is needed where the model has none.
+
+            shutter = dspace.Shutter(exposure_s=0.02, readout_s=0.03)
+            start = playback.time
+            planes = scene.simulate_exposure(shutter, lambda t: playback.seek(start + t), model, frame=body, radiance=True)
+            counts = sensor.expose(planes["radiance"], model)                                  # its exposure_s: the shutter's"""
+        planes = dict(depth=depth, range=range, label=label, lit_fraction=lit_fraction, incidence=incidence, emission=emission,
+                      phase=phase, normal=normal)
+        return exposed_image(self, shutter, at, color, radiance, planes, model, camera, vantage, frame, size, scale, samples,
+                             exposure, ornaments, hide, tile, progress)
+
+    def simulate_lines(self, model, frame, at=None, color=True, radiance=False, depth=False, range=False, label=False,
+                       lit_fraction=False, incidence=False, emission=False, phase=False, normal=False, samples=2, exposure=1.0,
+                       ornaments=False, hide=(), progress=None):
+        """The image of a push-broom camera: a dict of planes (h, w, ...), as of simulate_image(), each line from its own pose.
+
+        model: a CameraModel of type line_scan, at least 3 pixels wide; its poses are in `frame`, such as the body's fixed axes for
+        a USGS ISD. at: a function that puts the scene where it is when a line is taken, by the line's number from 0; None: the
+        scene stands still. The camera's own motion is the model's. Lines before the first and after the last pose are black, 0,
+        +infinity or NaN. Other arguments: as for simulate_image(). One picture of a row is drawn for each line."""
+        planes = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
+                      incidence=incidence, emission=emission, phase=phase, normal=normal)
+        return scanned_image(self, model, at, frame, planes, samples, exposure, ornaments, hide, progress)
+
     def save_image(self, path, model=None, camera=None, vantage=None, frame=None, size=None, scale=False, plane="color",
                    sensor=None, seed=0, number=0, samples=2, exposure=1.0, ornaments=False, hide=(), tile=TILE, progress=None):
         """Writes one plane of the image that simulate_image() makes, tile by tile: the memory that it takes grows with the
@@ -226,8 +265,8 @@ class SceneImages:
                                        for each in items(hide, "hide", about, "fragments or their names"))
         return command
 
-    def _draw(self, command, take, tile, progress, size, model):
-        """Draws all tiles, row by row. take: called with (x, y, width and height of the image, {plane: array}) for each; the
+    def _draw(self, command, take, tile, progress, size, model, rows=None):
+        """Draws all tiles, row by row; rows: from the first to before the last of these. take: called with (x, y, width and height of the image, {plane: array}) for each; the
         arrays are good until it returns. Returns a LensPicture."""
         about = "simulated image"
         tile = integer(tile, "the tile", about)
@@ -238,10 +277,11 @@ class SceneImages:
         message = command.simulate_image
         counts, first, pupil = np.zeros(4, dtype=np.int64), None, 0.0
         width, height = size if size is not None else (model.size if model is not None and model.size else (0, 0))
-        x = y = 0
+        x, y = 0, rows[0] if rows else 0
         while True:
             message.x, message.y = x, y
-            message.tile_width, message.tile_height = (min(tile, max(width - x, 0)), min(tile, max(height - y, 0)))
+            end = rows[1] if rows else height
+            message.tile_width, message.tile_height = (min(tile, max(width - x, 0)), min(tile, max(end - y, 0)))
             reply = self._scene._execute(command).capture
             lens = reply.lens
             if first is None:
@@ -255,7 +295,7 @@ class SceneImages:
                 x, y = 0, y + reply.height
             if progress is not None:
                 progress(min((y * width + x * reply.height) / (width * height), 1.0))
-            if y >= height:
+            if y >= (rows[1] if rows else height):
                 break
             check_signals()
         return LensPicture(int(counts[0]), int(counts[1]), int(counts[2]), first.half_angle_deg, first.pupil_shift, pupil,

@@ -252,6 +252,8 @@ class Scene(Strict):
 
     simulate_image = delegate(SceneImages, "simulate_image")
     save_image = delegate(SceneImages, "save_image")
+    simulate_lines = delegate(SceneImages, "simulate_lines")
+    simulate_exposure = delegate(SceneImages, "simulate_exposure")
     image_state = delegate(SceneImages, "image_state")
     image_metadata = delegate(SceneImages, "image_metadata")
     project_points = delegate(SceneImages, "project_points")

@@ -1,10 +1,9 @@
 """The shipped field with its detail: hills around it, centimetres about the drive, soil, rocks, and the wheels' ruts."""
 import numpy as np
 
-from dspace import Pose
+from dspace.frames.poses import Pose
 from dspace.rover import GridTerrain
-
-from rocks import add_rocks
+from dspace.shipped.rocks import add_rocks
 
 SOIL = (0.47, 0.459, 0.439)  # sRGB, the mean of the field's colours
 SUN = (-0.35, 0.80, 0.48)  # towards it: to the left of the drive, 29 degrees high
@@ -17,13 +16,19 @@ TREAD = 0.004  # metres
 RUT = dict(width=0.32, sinkage=SINKAGE, wall=0.05, rim_width=0.12, rim_height=0.025, tread_pitch=0.157, tread_depth=TREAD)
 
 
-def add_field(scene, folder):
-    """Opens the shipped ground as one terrain and adds what stands on it and around it."""
-    terrain = scene.add_terrain(folder / "field.tif", name="terrain", mode="clipmap", color=SOIL, 
+def add_ground(scene, folder):
+    """Opens the shipped ground, with centimetres about the drive, as one Terrain. folder: Data/field."""
+    terrain = scene.add_terrain(folder / "field.tif", name="terrain", mode="clipmap", color=SOIL,
                                 patches=[dict(path=folder / "site.tif", margin=4.0)])
     terrain.add_image(folder / "field_color.tif")
     terrain.add_image(folder / "site_color.tif")
     terrain.set_style(tracks=dict(color=(0.10, 0.095, 0.09), opacity=0.5))
+    return terrain
+
+
+def add_field(scene, folder):
+    """Opens the shipped ground as one Terrain and adds what stands on it and around it."""
+    terrain = add_ground(scene, folder)
     scene.add_terrain(folder / "hills.tif", name="hills", mode="triangles", triangles=9000, color=SOIL)
     add_rocks(scene, folder / "rocks.npy")
     return terrain
