@@ -199,6 +199,7 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
     part(axis, 3) = (double(size) - 2.0 * first[axis] - extent[axis]) / extent[axis];
   }
   view.clip = part * fit.ClipFromView(cascade);
+  view.texel = cascade.Texel(size);
   vtkOpenGLState* state = this->Window_->GetState();
   const std::size_t layer = object ? std::size_t(k) : fit.cascades.size() + std::size_t(ground);
   state->vtkglBindFramebuffer(GL_FRAMEBUFFER, this->Framebuffers_[layer]);
@@ -273,6 +274,7 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
       cascade.high = std::max(cascade.high, list.HighestToSun());
       DrawView map = view;
       map.clip = fit.ClipFromView(cascade); // ground is found by it, too
+      map.texel = cascade.Texel(fit.size);
       CasterTiles tiles(fit, cascade);
       for (const LightHull& hull : this->HullsOf(list, map, NoGround, painter)) {
         tiles.Add(hull);
@@ -284,6 +286,7 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
       allTiles->push_back(std::move(tiles));
       CascadeFit coarse = fit;
       coarse.size = fit.GroundSize();
+      map.texel = cascade.Texel(coarse.size);
       for (int ground = 0; ground < int(grounds->size()); ++ground) {
         const MapReceivers near(coarse, k, others[std::size_t(ground)]);
         CasterTiles casting(coarse, cascade);

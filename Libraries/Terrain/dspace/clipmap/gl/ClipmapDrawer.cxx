@@ -404,11 +404,22 @@ ClipmapDrawer::Blocks ClipmapDrawer::BlocksIn(const ClipmapCamera& camera,
   Chart& chart = *this->Active_;
   const ClipmapBlocks blocks(chart.levels, chart.placement, chart.heights, chart.ranges);
   const ClipmapViewVolume sight = ViewVolumeOf(camera, view);
+  const int finest = this->FinestIn(view);
   Blocks seen;
-  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
-    seen.push_back(blocks.Seen(this->Indices_, sight, level, chart.state.finest));
+  for (int level = finest; level < chart.levels.Count(); ++level) {
+    seen.push_back(blocks.Seen(this->Indices_, sight, level, finest));
   }
   return seen;
+}
+
+int ClipmapDrawer::FinestIn(const DrawView& view) const {
+  const Chart& chart = *this->Active_;
+  const double posts = view.texel / chart.state.cellSize; // of level 0, a texel
+  if (!view.clip || posts < 1.0) {
+    return chart.state.finest;
+  }
+  return std::clamp(int(std::floor(std::log2(posts))), chart.state.finest,
+                    std::max(chart.state.finest, chart.levels.Count() - 1));
 }
 
 std::vector<LightHull> ClipmapDrawer::Hulls(const CustomDrawing& drawing) {
@@ -566,11 +577,12 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
   std::vector<GLsizei> counts;
   std::vector<const void*> firsts;
   glBindVertexArray(this->VertexArray_);
-  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
+  const int finest = this->FinestIn(drawing.view);
+  for (int level = finest; level < chart.levels.Count(); ++level) {
     counts.clear();
     firsts.clear();
     for (const ClipmapIndices::Run& run :
-         ClipmapBlocks::Runs(blocks[std::size_t(level - chart.state.finest)], chosen)) {
+         ClipmapBlocks::Runs(blocks[std::size_t(level - finest)], chosen)) {
       counts.push_back(GLsizei(run.count));
       firsts.push_back(reinterpret_cast<const void*>(run.first * sizeof(std::uint16_t)));
       drawing.statistics.trianglesDrawn += run.count / 3;

@@ -74,6 +74,9 @@ private:
   // Of each level, from the finest on.
   using Blocks = std::vector<std::vector<ClipmapBlocks::Block>>;
   Blocks BlocksIn(const ClipmapCamera& camera, const DrawView& view) const;
+  // The finest level that a view draws: of a shadow map, the coarsest whose posts are no further
+  // apart than its texels.
+  int FinestIn(const DrawView& view) const;
   void DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Features features,
                   const ClipmapCamera& camera, const Blocks& blocks,
                   const std::function<bool(const ClipmapBlocks::Block&)>& chosen);
