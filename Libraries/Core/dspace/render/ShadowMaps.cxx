@@ -148,6 +148,7 @@ LightHull ShadowMaps::HullOf(const DrawBatch& batch, const DrawInstance& instanc
   const Eigen::AlignedBox3f& bounds = mesh.bounds;
   const Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>> X_VM(
       instance.viewFromMesh.data());
+  hull.points.reserve(8);
   for (int i = 0; i < 8; ++i) {
     const Eigen::Vector3f corner = bounds.corner(Eigen::AlignedBox3f::CornerType(i));
     hull.points.emplace_back((X_VM * corner.homogeneous()).cast<double>());

@@ -114,14 +114,9 @@ std::vector<ClipmapBlocks::Block> ClipmapBlocks::Seen(const ClipmapIndices& indi
   return blocks;
 }
 
-std::vector<ClipmapIndices::Run>
-ClipmapBlocks::Runs(const std::vector<Block>& blocks,
-                    const std::function<bool(const Block&)>& chosen) {
+std::vector<ClipmapIndices::Run> ClipmapBlocks::Runs(const std::vector<Block>& blocks) {
   std::vector<ClipmapIndices::Run> runs;
   for (const Block& block : blocks) {
-    if (!chosen(block)) {
-      continue;
-    }
     if (!runs.empty() && runs.back().first + runs.back().count == block.run.first) {
       runs.back().count += block.run.count;
     } else {

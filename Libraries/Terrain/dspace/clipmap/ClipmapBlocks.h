@@ -3,7 +3,6 @@
 #define DSPACE_TERRAIN_CLIPMAPBLOCKS_H
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -41,9 +40,8 @@ public:
   // the others have its hole.
   std::vector<Block> Seen(const ClipmapIndices& indices, const ClipmapViewVolume& sight, int level,
                           int finest) const;
-  // Their runs of indices, joined where they follow each other; those that `chosen` takes.
-  static std::vector<ClipmapIndices::Run> Runs(const std::vector<Block>& blocks,
-                                               const std::function<bool(const Block&)>& chosen);
+  // Their runs of indices, joined where they follow each other.
+  static std::vector<ClipmapIndices::Run> Runs(const std::vector<Block>& blocks);
 
 private:
   Eigen::AlignedBox2d PostsOf(int level, int column, int row) const;

@@ -12,35 +12,48 @@ namespace {
 constexpr double Below = 16.0;
 constexpr double Grazing = 1e-3; // sine of the light's elevation over planes that say nothing more
 
-// The sides of the convex hull of points (A. M. Andrew 1979), moved outwards by a radius.
-std::vector<Eigen::Vector3d> SidesOf(std::vector<Eigen::Vector2d> points, double radius) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+// The sides of the convex hull of points (A. M. Andrew 1979), moved outwards by a radius. Returns
+// how many there are: none of too many points, which a box must do for.
+template<std::size_t Most>
+int SidesOf(const std::vector<Eigen::Vector3d>& given, double radius,
+            std::array<Eigen::Vector3d, Most>& sides) {
+  std::array<Eigen::Vector2d, Most> points;
+  if (given.size() > Most) {
+    return 0;
+  }
+  const auto end = std::transform(given.begin(), given.end(), points.begin(),
+                                  [](const Eigen::Vector3d& p) { return p.head<2>(); });
+  const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
     return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  });
-  std::vector<Eigen::Vector3d> sides;
+  };
+  for (auto p = points.begin(); p != end; ++p) { // there are few
+    std::rotate(std::upper_bound(points.begin(), p, *p, before), p, p + 1);
+  }
+  int count = 0;
   for (const double turn : {1.0, -1.0}) { // the lower half, and the upper one
-    std::vector<Eigen::Vector2d> chain;
-    for (const Eigen::Vector2d& p : points) {
-      while (chain.size() > 1) {
-        const Eigen::Vector2d a = chain.back() - chain[chain.size() - 2];
-        const Eigen::Vector2d b = p - chain.back();
+    std::array<Eigen::Vector2d, Most> chain;
+    std::size_t length = 0;
+    for (auto p = points.begin(); p != end; ++p) {
+      while (length > 1) {
+        const Eigen::Vector2d a = chain[length - 1] - chain[length - 2];
+        const Eigen::Vector2d b = *p - chain[length - 1];
         if (turn * (a.x() * b.y() - a.y() * b.x()) > 0.0) {
           break;
         }
-        chain.pop_back();
+        --length;
       }
-      chain.push_back(p);
+      chain[length++] = *p;
     }
-    for (std::size_t i = 1; i < chain.size(); ++i) {
+    for (std::size_t i = 1; i < length && count < int(Most); ++i) {
       const Eigen::Vector2d along = chain[i] - chain[i - 1];
-      const double length = along.norm();
-      if (length > 0.0) {
-        const Eigen::Vector2d out = turn / length * Eigen::Vector2d(along.y(), -along.x());
-        sides.emplace_back(out.x(), out.y(), out.dot(chain[i]) + radius);
+      const double distance = along.norm();
+      if (distance > 0.0) {
+        const Eigen::Vector2d out = turn / distance * Eigen::Vector2d(along.y(), -along.x());
+        sides[std::size_t(count++)] = {out.x(), out.y(), out.dot(chain[i]) + radius};
       }
     }
   }
-  return sides;
+  return count;
 }
 
 } // namespace
@@ -52,13 +65,12 @@ CasterTiles::CasterTiles(const CascadeFit& fit, const CascadeFit::Cascade& casca
 
 CasterTiles::Extent CasterTiles::ExtentOf(const LightHull& hull) const {
   Extent extent;
-  std::vector<Eigen::Vector2d> places;
+  thread_local std::vector<Eigen::Vector3d> places;
+  places.clear();
   for (const Eigen::Vector3d& point : hull.points) {
-    const Eigen::Vector3d light = this->Axes_ * point;
-    extent.box.extend(light);
-    places.emplace_back(light.head<2>());
+    places.push_back(this->Axes_ * point);
+    extent.box.extend(places.back());
   }
-  extent.sides = SidesOf(std::move(places), hull.radius);
   extent.box.min().array() -= hull.radius;
   extent.box.max().array() += hull.radius;
   const auto along = [this](const Eigen::Vector4d& plane) -> std::optional<Eigen::Vector3d> {
@@ -70,6 +82,10 @@ CasterTiles::Extent CasterTiles::ExtentOf(const LightHull& hull) const {
   };
   extent.floor = hull.floor ? along(*hull.floor) : std::nullopt;
   extent.ceiling = hull.ceiling ? along(*hull.ceiling) : std::nullopt;
+  const Eigen::Vector2d sizes = extent.box.sizes().head<2>();
+  if (sizes.maxCoeff() > this->Tile_) { // the box does of what fills few tiles
+    extent.sideCount = SidesOf(places, hull.radius, extent.sides);
+  }
   return extent;
 }
 
@@ -88,12 +104,48 @@ std::optional<std::array<int, 4>> CasterTiles::TilesOf(const Eigen::AlignedBox3d
   return tiles;
 }
 
-bool CasterTiles::Beside(const Extent& extent, int i, int j, double room) const {
-  const Eigen::Vector2d middle = this->Corner_ + this->Tile_ * Eigen::Vector2d(i + 0.5, j + 0.5);
+std::array<int, 2> CasterTiles::SpanOf(const Extent& extent, int row, int left, int right,
+                                       double room) const {
+  constexpr double Rounding = 1e-9; // tiles
   const double half = 0.5 * this->Tile_ + room;
-  return std::any_of(extent.sides.begin(), extent.sides.end(), [&](const Eigen::Vector3d& side) {
-    return side.head<2>().dot(middle) - half * side.head<2>().lpNorm<1>() > side.z();
-  });
+  const double v = this->Corner_.y() + this->Tile_ * (row + 0.5);
+  double from = left;
+  double to = right;
+  for (int i = 0; i < extent.sideCount; ++i) {
+    const Eigen::Vector3d& side = extent.sides[std::size_t(i)];
+    // side.x times the middle of a tile is no more.
+    const double most = side.z() + half * side.head<2>().lpNorm<1>() - side.y() * v;
+    const double at = (most / side.x() - this->Corner_.x()) / this->Tile_ - 0.5;
+    if (side.x() > 0.0) {
+      to = std::min(to, std::floor(at + Rounding) + 1.0);
+    } else if (side.x() < 0.0) {
+      from = std::max(from, std::ceil(at - Rounding));
+    } else if (most < 0.0) {
+      to = from;
+    }
+  }
+  return to > from ? std::array<int, 2>{int(from), int(to)} : std::array<int, 2>{left, left};
+}
+
+template<class Taken>
+bool CasterTiles::AnyTile(const Extent& extent, const std::array<int, 4>& tiles, double room,
+                          const Taken& taken) const {
+  const double highest = extent.box.max().z();
+  const double lowest = extent.box.min().z();
+  for (int j = tiles[1]; j < tiles[3]; ++j) {
+    const auto [first, end] = this->SpanOf(extent, j, tiles[0], tiles[2], room);
+    for (int i = first; i < end; ++i) {
+      const double high = extent.ceiling
+                              ? std::min(highest, this->Extreme(*extent.ceiling, i, j, room, 1.0))
+                              : highest;
+      const double low =
+          extent.floor ? std::max(lowest, this->Extreme(*extent.floor, i, j, room, -1.0)) : lowest;
+      if (taken(std::size_t(j) * Side + std::size_t(i), high, low)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 double CasterTiles::Extreme(const Eigen::Vector3d& plane, int i, int j, double room,
@@ -109,23 +161,17 @@ void CasterTiles::Add(const Extent& extent) {
   if (!tiles) {
     return;
   }
-  const auto& [left, bottom, right, top] = *tiles;
-  for (int j = bottom; j < top; ++j) {
-    for (int i = left; i < right; ++i) {
-      if (this->Beside(extent, i, j, room)) {
-        continue;
-      }
-      const double high = extent.ceiling ? std::min(extent.box.max().z(),
-                                                    this->Extreme(*extent.ceiling, i, j, room, 1.0))
-                                         : extent.box.max().z();
-      const double low = extent.floor ? std::max(extent.box.min().z(),
-                                                 this->Extreme(*extent.floor, i, j, room, -1.0))
-                                      : extent.box.min().z();
-      const std::size_t at = std::size_t(j) * Side + i;
-      this->Tops_[at] = std::max(this->Tops_[at], std::nextafter(float(high), Everything));
-      this->Lows_[at] = std::min(this->Lows_[at], std::nextafter(float(low), Nothing));
+  this->AnyTile(extent, *tiles, room, [this](std::size_t at, double high, double low) {
+    // A float of which neither is beyond.
+    if (high > double(this->Tops_[at])) {
+      this->Tops_[at] = std::nextafter(float(high), Everything);
     }
-  }
+    if (low < double(this->Lows_[at])) {
+      this->Lows_[at] = std::nextafter(float(low), Nothing);
+    }
+    return false;
+  });
+  const auto& [left, bottom, right, top] = *tiles;
   this->Tiles_ = {std::min(this->Tiles_[0], left), std::min(this->Tiles_[1], bottom),
                   std::max(this->Tiles_[2], right), std::max(this->Tiles_[3], top)};
 }
@@ -182,19 +228,9 @@ bool CasterTiles::Shade(const Extent& extent) const {
     return false;
   }
   const double room = Below * this->Texel_;
-  const auto& [left, bottom, right, top] = *tiles;
-  for (int j = bottom; j < top; ++j) {
-    for (int i = left; i < right; ++i) {
-      const double low = extent.floor ? std::max(extent.box.min().z(),
-                                                 this->Extreme(*extent.floor, i, j, 0.0, -1.0))
-                                      : extent.box.min().z();
-      if (double(this->Tops_[std::size_t(j) * Side + i]) > low - room &&
-          !this->Beside(extent, i, j, 0.0)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return this->AnyTile(extent, *tiles, 0.0, [&](std::size_t at, double, double low) {
+    return double(this->Tops_[at]) > low - room;
+  });
 }
 
 bool CasterTiles::TakeShadows(const LightHull& caster, double above) const {
@@ -217,19 +253,9 @@ bool CasterTiles::TakeShadows(const Extent& extent, double above) const {
     return false;
   }
   const double lower = above - Below * this->Texel_;
-  const auto& [left, bottom, right, top] = *tiles;
-  for (int j = bottom; j < top; ++j) {
-    for (int i = left; i < right; ++i) {
-      const double high = extent.ceiling ? std::min(extent.box.max().z(),
-                                                    this->Extreme(*extent.ceiling, i, j, 0.0, 1.0))
-                                         : extent.box.max().z();
-      if (double(this->Lows_[std::size_t(j) * Side + i]) < high - lower &&
-          !this->Beside(extent, i, j, 0.0)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return this->AnyTile(extent, *tiles, 0.0, [&](std::size_t at, double high, double) {
+    return double(this->Lows_[at]) < high - lower;
+  });
 }
 
 bool CasterTiles::Empty() const {

@@ -63,10 +63,13 @@ public:
 private:
   // Along U, V and S, and how S of its planes goes with U and V.
   struct Extent {
+    static constexpr int Most = 8; // points with sides; a polygon has no more sides than points
     Eigen::AlignedBox3d box;
     std::optional<Eigen::Vector3d> floor; // S = x + y U + z V
     std::optional<Eigen::Vector3d> ceiling;
-    std::vector<Eigen::Vector3d> sides; // outside where x U + y V > z for any
+    std::array<Eigen::Vector3d, Most>
+        sides; // outside where x U + y V > z for any of the first ones
+    int sideCount = 0;
   };
   Extent ExtentOf(const LightHull& hull) const;
   Extent ExtentOf(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) const;
@@ -76,7 +79,14 @@ private:
   // Of tiles, with `room` [m] beside the range: first U, first V, last U, last V, the last not
   // among them; none: beside the map.
   std::optional<std::array<int, 4>> TilesOf(const Eigen::AlignedBox3d& box, double room) const;
-  bool Beside(const Extent& extent, int i, int j, double room) const;
+  // Of a row's tiles [left, right), those about which, with `room` [m], the sides leave something:
+  // first and past the last.
+  std::array<int, 2> SpanOf(const Extent& extent, int row, int left, int right, double room) const;
+  // `taken(tile, high, low)` for each tile of an extent, with the greatest and the least S over it
+  // and `room` [m] about it, until it returns true. Returns whether it did.
+  template<class Taken>
+  bool AnyTile(const Extent& extent, const std::array<int, 4>& tiles, double room,
+               const Taken& taken) const;
   // The least (-1) or greatest (1) S of a plane over a tile and `room` [m] about it.
   double Extreme(const Eigen::Vector3d& plane, int i, int j, double room, double sign) const;
 

@@ -62,6 +62,7 @@ ClipmapViewVolume ViewVolumeOf(const ClipmapCamera& camera, const DrawView& view
 // A block's bounds in view axes.
 LightHull HullOf(const ClipmapCamera& camera, const ClipmapBlocks::Bounds& bounds) {
   LightHull hull;
+  hull.points.reserve(bounds.points.size());
   for (const Eigen::Vector3d& point : bounds.points) {
     hull.points.push_back(camera.X_VS * point);
   }
@@ -74,6 +75,19 @@ LightHull HullOf(const ClipmapCamera& camera, const ClipmapBlocks::Bounds& bound
     }
   }
   return hull;
+}
+
+// Moves the blocks that `chosen` takes, level by level, to the result.
+template<class Chosen>
+std::vector<std::vector<ClipmapBlocks::Block>>
+Take(std::vector<std::vector<ClipmapBlocks::Block>>& from, const Chosen& chosen) {
+  std::vector<std::vector<ClipmapBlocks::Block>> taken;
+  for (auto& level : from) {
+    const auto others = std::stable_partition(level.begin(), level.end(), chosen);
+    taken.emplace_back(std::make_move_iterator(level.begin()), std::make_move_iterator(others));
+    level.erase(level.begin(), others);
+  }
+  return taken;
 }
 
 FocusView FocusViewOf(const ClipmapCamera& camera, const DrawView& view) {
@@ -435,18 +449,21 @@ std::vector<LightHull> ClipmapDrawer::Hulls(const CustomDrawing& drawing) {
 
 void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features features) {
   const ClipmapCamera camera(drawing.object.X_VO, this->Active_->placement);
-  const Blocks blocks = this->BlocksIn(camera, drawing.view);
+  Blocks blocks = this->BlocksIn(camera, drawing.view);
   const DrawView& view = drawing.view;
   const bool maps = (features & SurfaceShaders::Lit) != 0 && view.shadows && view.shadowTiles;
   if (!maps || view.look.shadows.cascadeColors || view.look.shadows.litColors) {
-    this->DrawBlocks(drawing, features, camera, blocks, [&](const ClipmapBlocks::Block& block) {
-      return !view.takes || view.takes(HullOf(camera, block.bounds));
-    });
+    if (view.takes) {
+      Take(blocks, [&](const ClipmapBlocks::Block& block) {
+        return !view.takes(HullOf(camera, block.bounds));
+      });
+    }
+    this->DrawBlocks(drawing, features, camera, blocks);
     return;
   }
   // Most ground is near no caster: its program reads no maps.
   const int own = this->OwnGround(drawing);
-  const auto shaded = [&](const ClipmapBlocks::Block& block) {
+  const Blocks shaded = Take(blocks, [&](const ClipmapBlocks::Block& block) {
     const LightHull hull = HullOf(camera, block.bounds);
     bool may = MayBeShaded(*view.shadows, *view.shadowTiles, hull);
     for (int i = 0; i < int(view.shadowGrounds->size()) && !may; ++i) {
@@ -454,10 +471,9 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
           i != own && MayBeShaded(*view.shadows, (*view.shadowGrounds)[std::size_t(i)].tiles, hull);
     }
     return may;
-  };
-  this->DrawBlocks(drawing, features, camera, blocks, shaded);
-  this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks,
-                   [&](const ClipmapBlocks::Block& block) { return !shaded(block); });
+  });
+  this->DrawBlocks(drawing, features, camera, shaded);
+  this->DrawBlocks(drawing, SurfaceShaders::WithoutMaps(features), camera, blocks);
 }
 
 int ClipmapDrawer::OwnGround(const CustomDrawing& drawing) {
@@ -474,8 +490,7 @@ int ClipmapDrawer::OwnGround(const CustomDrawing& drawing) {
 }
 
 void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Features features,
-                               const ClipmapCamera& camera, const Blocks& blocks,
-                               const std::function<bool(const ClipmapBlocks::Block&)>& chosen) {
+                               const ClipmapCamera& camera, const Blocks& blocks) {
   const Chart& chart = *this->Active_;
   const bool labels = (features & SurfaceShaders::Label) != 0;
   const ClipmapStyle& style = this->Style_;
@@ -582,7 +597,7 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
     counts.clear();
     firsts.clear();
     for (const ClipmapIndices::Run& run :
-         ClipmapBlocks::Runs(blocks[std::size_t(level - finest)], chosen)) {
+         ClipmapBlocks::Runs(blocks[std::size_t(level - finest)])) {
       counts.push_back(GLsizei(run.count));
       firsts.push_back(reinterpret_cast<const void*>(run.first * sizeof(std::uint16_t)));
       drawing.statistics.trianglesDrawn += run.count / 3;

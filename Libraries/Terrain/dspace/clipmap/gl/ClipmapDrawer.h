@@ -3,7 +3,6 @@
 #define DSPACE_TERRAIN_CLIPMAPDRAWER_H
 
 #include <array>
-#include <functional>
 #include <memory>
 #include <vector>
 
@@ -78,8 +77,7 @@ private:
   // apart than its texels.
   int FinestIn(const DrawView& view) const;
   void DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Features features,
-                  const ClipmapCamera& camera, const Blocks& blocks,
-                  const std::function<bool(const ClipmapBlocks::Block&)>& chosen);
+                  const ClipmapCamera& camera, const Blocks& blocks);
 
   const ClipmapTerrain* Terrain_;
   ClipmapIndices Indices_;
