@@ -64,11 +64,11 @@ vec3 mappedNormal(vec3 N)
   vec3 B = across2 * t1.y + across1 * t2.y;
   float lengthT = length(T);
   float lengthB = length(B);
+  vec3 n = texture(normalTexture, tcoord).xyz * 2.0 - 1.0; // here all pixels take the same way
   if (lengthT <= 0.0 || lengthB <= 0.0)
   {
     return N; // texture coordinates that stand still
   }
-  vec3 n = texture(normalTexture, tcoord).xyz * 2.0 - 1.0;
   n.xy *= normalScale;
   return normalize(mat3(T / lengthT, B / lengthB, N) * n);
 }
@@ -152,16 +152,16 @@ void main()
 #endif
   float exposed = 1.0;
 #if defined(DSPACE_UNSHADED) && defined(DSPACE_MIXED) && !defined(DSPACE_ANGLES)
-  vec4 styled = unshadedColor(color.rgb);
-  exposed = step(1e-6, styled.a);
+  vec4 style = unshadedStyle();
+  exposed = step(1e-6, style.a);
 #ifndef DSPACE_DISPLAY_COLOR
-  if (lightExposure.x > 0.0 && styled.a < 1.0)
+  if (lightExposure.x > 0.0 && style.a < 1.0)
   {
-    styled = unshadedColor(tonedLight(color.rgb, lightExposure.x, lightExposure.y > 0.0));
+    color.rgb = tonedLight(color.rgb, lightExposure.x, lightExposure.y > 0.0);
     exposed = 0.0; // is done
   }
 #endif
-  color.rgb = styled.rgb;
+  color.rgb = color.rgb * style.a + style.rgb;
 #endif
 
 #ifdef DSPACE_PEEL

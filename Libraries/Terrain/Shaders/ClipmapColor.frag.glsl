@@ -22,13 +22,12 @@ vec3 withStyle(vec3 color)
 }
 
 #ifdef DSPACE_UNSHADED
-// The style over a shaded colour, and how much of that is seen: each part mixes the colour below
-// with its own.
-vec4 unshadedColor(vec3 color)
+// What the style adds to a shaded colour, and how much of that is seen: each part mixes the colour
+// below with its own.
+vec4 unshadedStyle()
 {
   vec3 over = withStyle(vec3(0.0));
-  float through = withStyle(vec3(1.0)).x - over.x;
-  return vec4(color * through + over, through);
+  return vec4(over, withStyle(vec3(1.0)).x - over.x);
 }
 #endif
 

@@ -28,8 +28,10 @@ vec3 withGrid(vec3 color)
 {
 #ifdef DSPACE_POLE
   vec3 lines = degreesAt() / gridInterval;
-  float meridian = fwidth(lines.x) < fwidth(lines.z) ? lineAt(lines.x, gridWidth)
-                                                     : lineAt(lines.z, gridWidth);
+  // Derivatives are undefined where neighbouring pixels take different branches: both lines first.
+  float jumping = lineAt(lines.x, gridWidth);
+  float other = lineAt(lines.z, gridWidth);
+  float meridian = fwidth(lines.x) < fwidth(lines.z) ? jumping : other;
   float line = max(meridian, lineAt(lines.y, gridWidth));
 #else
   float line = max(lineAt(styleAt.z, gridWidth), lineAt(styleAt.w, gridWidth));
