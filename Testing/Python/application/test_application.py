@@ -86,6 +86,8 @@ def lit(view):
 
 def test_a_model_is_opened_and_fills_a_view(app, data):
     robot = app.open(data / "rover" / "rover.urdf")
+    assert app.open(data / "rover" / "rover.urdf").name == "rover 2"  # beside the first, as in the demo's scene
+    assert app.open(data / "rover" / "rover.urdf").name == "rover 3"
     assert isinstance(robot, dspace.Robot)
     assert app._host.shown == [("view 1", "view 1")]
     assert lit(app.view) > 0.1

@@ -323,13 +323,26 @@ class App:
         if name.endswith(".dspace"):
             return self._open_run(path)
         if name.endswith(MODELS) or os.path.isdir(path):
-            made = self.scene.load(path)
+            made = self._load(path)
             self._look_at()
             return made
         if name.endswith(RASTERS):
             return self._open_terrain(path)
         raise errors.Unsupported(f"its name says no format; accepted: {' '.join(MODELS + RASTERS)} .dspace .py",
                                  f"file {path!r}")
+
+    def _load(self, path):
+        """As Scene.load; a robot whose name is taken is numbered by its file's name: "rover 2"."""
+        number = 1
+        while True:
+            try:
+                if number == 1:
+                    return self.scene.load(path)
+                return self.scene.load(path, name=f"{pathlib.Path(path).stem} {number}")
+            except errors.AlreadyExists:
+                if not path.lower().endswith(".urdf"):
+                    raise
+                number += 1
 
     def _look_at(self):
         if not self.views:
