@@ -5,29 +5,9 @@ import numpy as np
 import pytest
 
 import dspace
+from besselian_support import EQUATOR, L2, MOON, POLE, SUN, TAN_F2, X, Y, axes_of_elements, power
 
-EQUATOR, POLE = 6378137.0, 6356752.3142
-MOON, SUN = 0.272281 * EQUATOR, 696000e3  # k2 of the elements, and their Sun
 PIXEL, SIZE = 3000.0, 241  # [m] across the camera's axis
-DELTA_T = 69.184  # [s] by which ITRF93 turns the Earth where UTC stands for UT1
-# sky_checks.json: F. Espenak's elements (NASA), lengths in radii of the equator; t [h] from 18h TDT.
-X, Y = (-0.129571, 0.5406426, -2.94e-05, -8.1e-06), (0.485416, -0.14164, -9.05e-05, 2e-06)
-D, MU = (11.8669596, -0.013622, -2e-06), (89.24543, 15.00394)
-L2, TAN_F2 = (-0.004025, 0.0001234, -1.17e-05), 0.0045992
-
-
-def power(c, t):
-    return sum(each * t ** i for i, each in enumerate(c))
-
-
-def axes_of_elements(t):
-    """Bessel's axes (rows: x east, y north, z to the Sun) in those of the Earth."""
-    d = math.radians(power(D, t))
-    # East longitude of the axis: minus its hour angle at Greenwich, which the elements have for delta-T = 0.
-    a = -math.radians(power(MU, t) - 0.00417807 * DELTA_T)
-    z = np.array([math.cos(d) * math.cos(a), math.cos(d) * math.sin(a), math.sin(d)])
-    x = np.array([-math.sin(a), math.cos(a), 0.0])
-    return np.array([x, np.cross(z, x), z])
 
 
 def dark_by_elements(ground, t):

@@ -32,7 +32,8 @@ class Lit:
         points of the Sun's disc. The lit fraction of a face of which a straight shadow hides a part is off by some
         1/samples**0.75. Shadows are those of the objects themselves, of other objects (obstacles=False: none) and of all
         terrains (terrain=False: none); hide, without and deadline: as for line_of_sight(). A place below the ground
-        is dark.
+        is dark. While a body of the scene stands before a body that is the Sun (Scene.add_body), the part of the disc that it
+        leaves at the middle of each object is a factor of the results (LitArea.sun_left), unless `sun` is given.
 
         method: "exact"; "image", by a parallel picture from the Sun of `resolution` pixels a side (default 2048), or "both":
         image_projected_area beside the exact results. The picture takes the Sun as a point, and both sides of faces.
@@ -70,4 +71,4 @@ class Lit:
         return LitArea(things[0] if single else things, of("area"), of("lit_area"), of("projected_area"), of("power"),
                        reply.irradiance, np.array([reply.sun.x, reply.sun.y, reply.sun.z]),
                        of("image_projected_area") if method != "exact" else None,
-                       of("image_pixel_area") if method != "exact" else None)
+                       of("image_pixel_area") if method != "exact" else None, of("sun_left"))

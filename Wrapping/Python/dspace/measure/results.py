@@ -193,7 +193,10 @@ class LitArea:
     sun (3,): unit vector towards the Sun, in the scene's root.
 
     image_projected_area [m^2]: by a picture from the Sun (method "image" or "both"), which takes the Sun as a point, and both sides
-    of faces; image_pixel_area [m^2]: of its pixels; else None. With "image" projected_area is the same, lit_area is NaN."""
+    of faces; image_pixel_area [m^2]: of its pixels; else None. With "image" projected_area is the same, lit_area is NaN.
+
+    sun_left, 0 to 1: the part of the Sun's disc that other bodies of the scene leave at the middle of the object (eclipses); it
+    is a factor of all sunlit areas and of the power."""
     object: object
     area: object
     lit_area: object
@@ -203,6 +206,7 @@ class LitArea:
     sun: np.ndarray
     image_projected_area: object = None
     image_pixel_area: object = None
+    sun_left: object = 1.0
 
     @property
     def fraction(self):

@@ -9,6 +9,7 @@
 #include <dspace/commands/scene/SunCommands.h>
 #include <dspace/measure/LitArea.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/scene/bodies/SunSeen.h>
 #include <dspace/state/SunPlace.h>
 
 namespace dspace::session {
@@ -85,6 +86,18 @@ double AreaOf(const std::vector<Face>& faces) {
   return area;
 }
 
+// The middle of faces by their areas.
+Eigen::Vector3d MiddleOf(const std::vector<Face>& faces) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double area = 0.0;
+  for (const Face& face : faces) {
+    const double twice = (face[1] - face[0]).cross(face[2] - face[0]).norm();
+    sum += twice / 3.0 * (face[0] + face[1] + face[2]);
+    area += twice;
+  }
+  return sum / area;
+}
+
 void FindLitArea(const Context& context, v1::LitArea& command) {
   const std::string name = "command lit_area";
   const Methods methods = MethodsOf(command.measuring(), name);
@@ -103,7 +116,7 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
                      "' has no Sun; accepted: a scene with a Sun, or the argument sun");
   }
   const Light light = command.has_sun() ? ChangedSun(context, *command.mutable_sun()) : *present;
-  const SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
+  SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
   const double brightest = *std::max_element(light.color.begin(), light.color.end());
   const bool off = !command.has_sun() && !light.enabled;
   const double irradiance = off ? 0.0 : SolarConstant * light.intensity * brightest;
@@ -121,9 +134,20 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
   for (int i = 0; i < command.object_size(); ++i) {
     v1::LitAreaReply::Surface* surface = reply.add_surface();
     surface->set_object(command.object(i));
+    double left = 1.0; // of the Sun's disc, by eclipses
+    if (!command.has_sun()) {
+      if (const auto body = SunSeenFrom(scene, MiddleOf(faces[i]))) {
+        sun.towards_R = body->towards_R;
+        left = body->left;
+      }
+    }
+    surface->set_sun_left(left);
+    if (i == 0) {
+      Put(sun.towards_R, reply.mutable_sun());
+    }
     if (pictures) {
       const auto [seen, pixel] = pictures->Seen(command.object(i), faces[i], sun.towards_R);
-      surface->set_image_projected_area(seen);
+      surface->set_image_projected_area(seen * left);
       surface->set_image_pixel_area(pixel);
     }
     if (!methods.exact) {
@@ -136,12 +160,11 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     const LitArea lit =
         MeasureLitArea(measured.Get(), sun, faces[i], command.both_sides(), samples);
     surface->set_area(lit.area);
-    surface->set_lit_area(lit.lit);
-    surface->set_projected_area(lit.projected);
-    surface->set_power(lit.projected * irradiance * efficiency);
+    surface->set_lit_area(lit.lit * left);
+    surface->set_projected_area(lit.projected * left);
+    surface->set_power(lit.projected * left * irradiance * efficiency);
   }
   reply.set_irradiance(irradiance);
-  Put(sun.towards_R, reply.mutable_sun());
   context.reply.mutable_lit_area()->Swap(&reply);
 }
 
