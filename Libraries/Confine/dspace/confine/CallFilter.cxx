@@ -9,10 +9,15 @@
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
+#include <linux/seccomp.h>
 #include <sched.h>
 #include <seccomp.h>
 #include <sys/ioctl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 namespace dspace::confine {
 namespace {
@@ -43,14 +48,28 @@ public:
     }
   }
 
-  void Load() {
-    const int result = seccomp_load(this->Context_.get());
+  void Load() { Check(seccomp_load(this->Context_.get())); }
+
+  std::vector<sock_filter> Program() {
+    const int file = memfd_create("dspace-calls", MFD_CLOEXEC);
+    const int result = file < 0 ? -errno : seccomp_export_bpf(this->Context_.get(), file);
+    const off_t size = result < 0 ? 0 : lseek(file, 0, SEEK_END);
+    std::vector<sock_filter> program(std::size_t(size) / sizeof(sock_filter));
+    const ssize_t got = result < 0 ? 0 : pread(file, program.data(), std::size_t(size), 0);
+    if (file >= 0) {
+      close(file);
+    }
+    Check(result < 0 ? result : got != size || size == 0 ? -EIO : 0);
+    return program;
+  }
+
+private:
+  static void Check(int result) {
     if (result < 0) {
       throw std::runtime_error(std::string("seccomp: ") + std::strerror(-result));
     }
   }
 
-private:
   const std::unique_ptr<void, void (*)(scmp_filter_ctx)> Context_;
 };
 
@@ -183,7 +202,75 @@ void RejectSockets(Filter& filter, const CallRules& rules) {
   }
 }
 
+void RejectAll(Filter& filter, std::initializer_list<int> calls) {
+  for (const int call : calls) {
+    filter.Reject(call);
+  }
+}
+
+void RejectWriting(Filter& filter) {
+  for (const std::uint64_t flag : {O_WRONLY, O_RDWR, O_CREAT, O_TRUNC}) {
+    filter.Reject(SCMP_SYS(open), {SCMP_A1(SCMP_CMP_MASKED_EQ, flag, flag)});
+    filter.Reject(SCMP_SYS(openat), {SCMP_A2(SCMP_CMP_MASKED_EQ, flag, flag)});
+  }
+  filter.Reject(SCMP_SYS(openat2), {}, ENOSYS); // it has its flags in memory
+  RejectAll(filter, {SCMP_SYS(creat), SCMP_SYS(unlink), SCMP_SYS(unlinkat), SCMP_SYS(rename),
+                     SCMP_SYS(renameat), SCMP_SYS(renameat2), SCMP_SYS(mkdir), SCMP_SYS(mkdirat),
+                     SCMP_SYS(rmdir), SCMP_SYS(link), SCMP_SYS(linkat), SCMP_SYS(symlink),
+                     SCMP_SYS(symlinkat), SCMP_SYS(mknod), SCMP_SYS(mknodat)});
+  // A descriptor for reading is enough for these.
+  RejectAll(filter, {SCMP_SYS(fchmod), SCMP_SYS(fchown), SCMP_SYS(fsetxattr),
+                     SCMP_SYS(fremovexattr), SCMP_SYS(ioctl)});
+  filter.Reject(SCMP_SYS(utimensat), {SCMP_A1(SCMP_CMP_EQ, 0, 0)});
+}
+
+void RejectOtherProcesses(Filter& filter) {
+  RejectAll(filter,
+            {SCMP_SYS(execve), SCMP_SYS(execveat), SCMP_SYS(fork), SCMP_SYS(vfork), SCMP_SYS(kill),
+             SCMP_SYS(tkill), SCMP_SYS(rt_sigqueueinfo), SCMP_SYS(rt_tgsigqueueinfo),
+             SCMP_SYS(pidfd_open), SCMP_SYS(pidfd_send_signal)});
+  filter.Reject(SCMP_SYS(clone), {SCMP_A0(SCMP_CMP_MASKED_EQ, CLONE_THREAD, 0)}); // threads may
+}
+
+void RejectMoreRights(Filter& filter) {
+  filter.Reject(SCMP_SYS(setrlimit));
+  filter.Reject(SCMP_SYS(prlimit64), {SCMP_A2(SCMP_CMP_NE, 0, 0)});
+  filter.Reject(SCMP_SYS(prctl), {SCMP_A0(SCMP_CMP_MASKED_EQ, Word, PR_SET_PDEATHSIG)});
+  RejectAll(filter, {SCMP_SYS(setuid), SCMP_SYS(setgid), SCMP_SYS(setreuid), SCMP_SYS(setregid),
+                     SCMP_SYS(setresuid), SCMP_SYS(setresgid), SCMP_SYS(setfsuid),
+                     SCMP_SYS(setfsgid), SCMP_SYS(setgroups), SCMP_SYS(capset)});
+}
+
+void RejectAllSockets(Filter& filter) {
+  RejectAll(filter, {SCMP_SYS(socket), SCMP_SYS(socketpair), SCMP_SYS(connect), SCMP_SYS(bind),
+                     SCMP_SYS(listen), SCMP_SYS(accept), SCMP_SYS(accept4), SCMP_SYS(sendmmsg)});
+  filter.Reject(SCMP_SYS(sendto), {SCMP_A4(SCMP_CMP_NE, 0, 0)}); // an address
+}
+
 } // namespace
+
+std::vector<sock_filter> CallsOfReader() {
+  Filter filter;
+  RejectReachingAround(filter);
+  RejectAdministration(filter);
+  RejectChangesByName(filter, false);
+  RejectWriting(filter);
+  RejectOtherProcesses(filter);
+  RejectMoreRights(filter);
+  RejectAllSockets(filter);
+  return filter.Program();
+}
+
+void FilterCallsOfReader(const std::vector<sock_filter>& calls) {
+  Filter others; // tgkill is how a process ends itself
+  others.Reject(SCMP_SYS(tgkill), {SCMP_A0(SCMP_CMP_NE, static_cast<std::uint64_t>(getpid()), 0)});
+  others.Load();
+  const sock_fprog program = {static_cast<unsigned short>(calls.size()),
+                              const_cast<sock_filter*>(calls.data())};
+  if (prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) != 0) {
+    throw std::runtime_error(std::string("seccomp: ") + std::strerror(errno));
+  }
+}
 
 void FilterCalls(const CallRules& rules) {
   Filter filter;

@@ -6,6 +6,7 @@
 #include <dspace/Budgets.h>
 #include <dspace/FileText.h>
 #include <dspace/FilesRead.h>
+#include <dspace/confine/FileRules.h>
 #include <dspace/import/files/ImageReader.h>
 #include <dspace/import/worker/Bytes.h>
 #include <dspace/import/worker/ImportWorker.h>
@@ -14,7 +15,11 @@
 #include <dspace/import/worker/UrdfBytes.h>
 
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include <sys/wait.h>
@@ -230,6 +235,46 @@ TEST_F(Faulty, ChildAsksForEveryFile) {
   });
   ExpectError(Error::Kind::InvalidArgument, "file '/etc/hostname': is outside",
               [&] { this->Worker_.ReadModel(path); });
+}
+
+// What a hostile document can do, by the names of FaultyWorker's attempts, without any restriction
+// and in the child.
+constexpr const char* Possible =
+    "read, list, process, write, create, creat, folder, link, rename, truncate, rights, rights of "
+    "a "
+    "descriptor, remove, socket of the network, socket of messages, socket of a path, pair of "
+    "sockets, start a program, become a program, fork, trace, signal, signal to a thread, limits, "
+    "outlive, thread";
+
+TEST_F(Faulty, ChildCanDoNothingElse) {
+  if (confine::FileRules::KernelAbi() < 1) {
+    GTEST_SKIP() << "this kernel has no Landlock";
+  }
+  const std::string path = this->File("hostile.stl");
+  const std::string beside = this->Folder_.Write("beside", "text");
+  ExpectError(Error::Kind::Corrupt, "attempts: thread", [&] { this->Worker_.ReadModel(path); });
+  EXPECT_EQ(std::filesystem::file_size(beside), 4u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(this->Folder_ / "."), {}), 2);
+}
+
+TEST_F(Faulty, ChildWithoutLandlockCanOnlyRead) {
+  const std::string path = this->File("hostile.stl");
+  this->Folder_.Write("beside", "text");
+  ASSERT_EQ(setenv("FAULTY_LANDLOCK", "0", 1), 0);
+  ExpectError(Error::Kind::Corrupt, "attempts: read, list, process, thread",
+              [&] { this->Worker_.ReadModel(path); });
+  unsetenv("FAULTY_LANDLOCK");
+}
+
+TEST_F(Faulty, AttemptsSucceedWithoutRestrictions) {
+  this->Folder_.Write("beside", "text");
+  const std::string command = FAULTY_WORKER + std::string(" '") + (this->Folder_ / "'");
+  FILE* const output = popen(command.c_str(), "r");
+  ASSERT_NE(output, nullptr);
+  char line[1000] = {};
+  EXPECT_NE(std::fgets(line, sizeof line, output), nullptr);
+  EXPECT_EQ(pclose(output), 0);
+  EXPECT_EQ(line, std::string(Possible) + "\n");
 }
 
 TEST_F(Faulty, OtherDocumentsAreReadMeanwhile) {

@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <map>
 #include <new>
+#include <sstream>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -27,11 +29,13 @@
 #include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/FileText.h>
+#include <dspace/confine/ReaderRules.h>
 #include <dspace/import/files/ImageCodec.h>
 #include <dspace/import/files/ImportFile.h>
 #include <dspace/import/worker/ModelBytes.h>
 #include <dspace/import/worker/UrdfBytes.h>
 #include <dspace/import/worker/WorkerMessage.h>
+#include <dspace/letters/FontFiles.h>
 
 namespace dspace {
 namespace {
@@ -74,15 +78,34 @@ void LimitMemory(std::uint64_t memory) {
 
 void LimitChild(const WorkerRequest& request) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
   Limit(RLIMIT_CORE, 0);
   Limit(RLIMIT_FSIZE, request.memory); // of the result, which is a file in memory
   const rlimit processor = {request.seconds, request.seconds + 1};
   setrlimit(RLIMIT_CPU, &processor);
   LimitMemory(request.memory);
   std::set_new_handler([] { _exit(WorkerExitForMemory); });
-  // Rules of the operating system for files and sockets belong here: the child needs only to read
-  // the libraries and fonts of the system, and the socket that it has.
+}
+
+std::string FolderOf(const void* function) {
+  Dl_info info{};
+  const bool found = dladdr(function, &info) != 0 && info.dli_fname;
+  return found ? std::filesystem::path(info.dli_fname).parent_path().string() : std::string();
+}
+
+// A child loads the library of images, and draws letters; all else comes from the session.
+std::vector<std::string> FoldersOfChildren() {
+  std::vector<std::string> folders = {FolderOf(reinterpret_cast<const void*>(&LoadImageCodec))};
+  for (const Font font : {Font::Sans, Font::Mono}) {
+    folders.push_back(std::filesystem::path(FontFile(font)).parent_path().string());
+  }
+  const char* libraries = std::getenv("LD_LIBRARY_PATH");
+  std::istringstream words(libraries ? libraries : "");
+  for (std::string word; std::getline(words, word, ':');) {
+    if (!word.empty() && word.front() == '/') {
+      folders.push_back(word);
+    }
+  }
+  return folders;
 }
 
 Descriptor ResultFile() {
@@ -122,11 +145,13 @@ void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
   SendWorkerMessage(Session, WorkerMessage::Kind::Done, done.Text(), result.Get());
 }
 
-[[noreturn]] void RunChild(const WorkerRequest& request, const WorkerReaders& readers) {
+[[noreturn]] void RunChild(const WorkerRequest& request, const WorkerReaders& readers,
+                           const confine::ReaderRules& rules) {
   LimitChild(request);
   SetBudget("image_pixels", request.imagePixels);
   SetImportFileOpener(AskForFile);
   try {
+    rules.Enforce();
     Serve(request, readers);
   } catch (const Error& error) {
     SendWorkerMessage(Session, WorkerMessage::Kind::Failed, ErrorText(error));
@@ -143,7 +168,8 @@ void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
 // The process that forks: it runs no code of importers after its start, and has one thread.
 class Worker {
 public:
-  explicit Worker(const WorkerReaders& readers) : Readers_(readers) {
+  Worker(const WorkerReaders& readers, int landlock)
+      : Readers_(readers), Rules_(FoldersOfChildren(), landlock) {
     sigset_t children;
     sigemptyset(&children);
     sigaddset(&children, SIGCHLD);
@@ -205,7 +231,7 @@ private:
       sigemptyset(&none);
       sigprocmask(SIG_SETMASK, &none, nullptr);
       Session = socket.Get();
-      RunChild(request, this->Readers_);
+      RunChild(request, this->Readers_, this->Rules_);
     }
     if (process < 0) {
       SendWorkerMessage(socket.Get(), WorkerMessage::Kind::Failed,
@@ -276,16 +302,17 @@ private:
   }
 
   WorkerReaders Readers_;
+  confine::ReaderRules Rules_;
   Descriptor Ended_;
   std::map<pid_t, Child> Children_;
 };
 
 } // namespace
 
-int RunImportWorker(const WorkerReaders& readers, void (*warm)()) {
+int RunImportWorker(const WorkerReaders& readers, void (*warm)(), int landlock) {
   std::signal(SIGPIPE, SIG_IGN);
   ::close_range(Control + 1, ~0U, 0);
-  Worker worker(readers);
+  Worker worker(readers, landlock);
   if (warm) {
     warm();
   }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include <dspace/confine/FileRules.h>
 #include <dspace/import/files/ModelReader.h>
 #include <dspace/import/model/Model.h>
 #include <dspace/import/urdf/Urdf.h>
@@ -20,8 +21,10 @@ struct WorkerReaders {
 
 // The main function of dspace-import-worker: takes requests from the socket on descriptor 3, whose
 // other end is ImportWorker's, until it is closed. `warm` is called first, so that no child does
-// that work. Returns the exit status.
-int RunImportWorker(const WorkerReaders& readers, void (*warm)());
+// that work. Each child gives up its rights before it reads (ReaderRules.h), with Landlock as of
+// version `landlock`; by default that of the kernel, 0: without. Returns the exit status.
+int RunImportWorker(const WorkerReaders& readers, void (*warm)(),
+                    int landlock = confine::FileRules::KernelAbi());
 
 } // namespace dspace
 
