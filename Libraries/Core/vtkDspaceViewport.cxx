@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,7 @@
 #include <dspace/render/ColorPicture.h>
 #include <dspace/render/CornerAxes.h>
 #include <dspace/render/LabelPicture.h>
+#include <dspace/render/LensView.h>
 #include <dspace/render/RadiancePicture.h>
 #include <dspace/render/ViewportLimits.h>
 #include <dspace/render/messages/VtkErrorTrap.h>
@@ -66,7 +68,10 @@ struct vtkDspaceViewport::Internals {
   dspace::LabelPicture parts; // of the object that was picked last
   dspace::RadiancePicture radiance;
   dspace::AnglePicture angles;
-  dspace::ColorPicture picture; // stands last: it gives the window back before the rest goes
+  LensMaker lensMaker; // empty: no lens
+  std::unique_ptr<dspace::LensView> lens;
+  std::size_t labelledSource = 0; // of the lens, in the labels
+  dspace::ColorPicture picture;   // stands last: it gives the window back before the rest goes
 
   bool stale = true;               // something of the viewport's own changed
   std::uint64_t drawnRevision = 0; // of the scene, in the picture that is there
@@ -131,7 +136,31 @@ struct vtkDspaceViewport::Internals {
       return this->bars.Covered(request.view.width / this->samples,
                                 request.view.height / this->samples);
     };
+    if (this->lens) {
+      this->lens->Draw(this->Object(), *this->scene, request);
+      request.view = this->View(1);
+      request.samples = 1;
+      request.instead = [this] { this->lens->Show(); };
+    }
     this->picture.Draw(this->Object(), *this->scene, request);
+  }
+
+  bool Complete() const { return this->lens ? this->lens->Complete() : this->picture.Complete(); }
+
+  // Throws unless OpenGL draws pictures of the lens' sources.
+  void CheckSources(const dspace::ViewLens& checked, int n) const {
+    for (const dspace::ViewLens::Source& source : checked.sources) {
+      dspace::CheckSamples(*this->context->GetHub(), "source view of the lens of " + this->Object(),
+                           source.width, source.height, n);
+    }
+  }
+
+  void RequireNoLens(const char* what) const {
+    if (this->lens) {
+      throw Error(Error::Kind::Unsupported, this->Object(),
+                  std::string(what) + " of a view through a lens is rejected; accepted: its "
+                                      "colour, a pick, or an image that is simulated");
+    }
   }
 
   // The viewport's own picture.
@@ -147,6 +176,9 @@ struct vtkDspaceViewport::Internals {
     this->context->GetHub()->MakeCurrent();
     if (!picture.IsCurrent(*this->scene, filter)) {
       dspace::DrawView view = this->View(1);
+      if (this->lens) {
+        view = this->lens->SourceView(view, this->labelledSource, 1);
+      }
       view.complete = true;
       dspace::VtkErrorTrap trap(this->context->GetMessages()); // of props
       picture.Draw(this->context, *this->scene, view, filter);
@@ -202,8 +234,30 @@ struct vtkDspaceViewport::Internals {
     trap.Check(this->Object());
   }
 
+  // From a pixel of the picture and a radius to those of its source, whose labels are drawn next.
+  // Returns false where the lens has no ray.
+  bool FollowLens(double& x, double& y, int& radius) {
+    const dspace::ViewLens& of = this->lens->Lens();
+    const auto column = std::size_t(x + 0.5), row = std::size_t(y + 0.5); // above -0.5
+    const dspace::ViewLens::Place& place = of.places[row * std::size_t(of.width) + column];
+    if (place.source < 0.0f) {
+      return false;
+    }
+    const auto source = std::size_t(place.source);
+    if (source != this->labelledSource) {
+      this->labelledSource = source;
+      this->labels.Invalidate();
+      this->parts.Invalidate();
+    }
+    x = std::clamp(double(place.x), 0.0, of.sources[source].width - 1.0);
+    y = std::clamp(double(place.y), 0.0, of.sources[source].height - 1.0);
+    radius = int(std::ceil(double(radius) * double(place.footprint)));
+    return true;
+  }
+
   // The camera or the size is another.
   void ViewChanged() {
+    this->labelledSource = 0;
     this->stale = true;
     this->labels.Invalidate();
     this->parts.Invalidate();
@@ -295,6 +349,23 @@ void vtkDspaceViewport::SetFixedView(const dspace::CameraPose& camera,
   this->Impl->ViewChanged();
 }
 
+void vtkDspaceViewport::SetLens(LensMaker maker) {
+  Internals& self = *this->Impl;
+  if (maker) {
+    const std::shared_ptr<const dspace::ViewLens> lens = maker(self.width, self.height);
+    self.CheckSources(*lens, self.samples);
+    if (self.lens) {
+      self.lens->SetLens(lens);
+    } else {
+      self.lens = std::make_unique<dspace::LensView>(self.context, lens);
+    }
+  } else {
+    self.lens.reset();
+  }
+  self.lensMaker = std::move(maker);
+  self.ViewChanged();
+}
+
 void vtkDspaceViewport::Resize(int width, int height) {
   Internals& self = *this->Impl;
   dspace::CheckSize(self.Object(), width, height);
@@ -302,6 +373,11 @@ void vtkDspaceViewport::Resize(int width, int height) {
     return;
   }
   dspace::CheckSamples(*self.context->GetHub(), self.Object(), width, height, self.samples);
+  if (self.lens) {
+    const std::shared_ptr<const dspace::ViewLens> lens = self.lensMaker(width, height);
+    self.CheckSources(*lens, self.samples);
+    self.lens->SetLens(lens);
+  }
   self.width = width;
   self.height = height;
   self.ViewChanged();
@@ -325,6 +401,9 @@ void vtkDspaceViewport::SetBackground(const std::array<double, 3>& bottom,
 void vtkDspaceViewport::RequireSamples(int samples) const {
   const Internals& self = *this->Impl;
   dspace::CheckSamples(*self.context->GetHub(), self.Object(), self.width, self.height, samples);
+  if (self.lens) {
+    self.CheckSources(self.lens->Lens(), samples);
+  }
 }
 
 void vtkDspaceViewport::SetSamples(int samples) {
@@ -355,7 +434,7 @@ const dspace::Navigation& vtkDspaceViewport::GetNavigation() const {
 }
 
 double vtkDspaceViewport::GetUsedExposure() const {
-  return this->Impl->picture.Exposure();
+  return this->Impl->lens ? this->Impl->lens->Exposure() : this->Impl->picture.Exposure();
 }
 
 const dspace::ViewLook& vtkDspaceViewport::GetLook() const {
@@ -475,12 +554,18 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
       this->IsOutdated(); // overlays as they are now
       self.Draw(filter, !request.physicalOnly, true);
       self.stale = true; // this picture is the request's, not the viewport's
-    } else if (this->IsOutdated() || !self.picture.Complete()) {
+    } else if (this->IsOutdated() || !self.Complete()) {
       self.DrawOwn(true);
     }
     capture.color = self.picture.Read();
   }
-  if (request.label || request.depth || request.range) {
+  const bool labels = request.label || request.depth || request.range;
+  const bool light = request.radiance || request.incidence || request.emission || request.phase ||
+                     request.litFraction || request.normal;
+  if (labels || light) {
+    self.RequireNoLens("a plane but colour");
+  }
+  if (labels) {
     self.DrawLabels(self.labels, filter);
     if (request.label) {
       capture.label = self.labels.Labels();
@@ -492,8 +577,7 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
       capture.range = self.labels.Ranges();
     }
   }
-  if (request.radiance || request.incidence || request.emission || request.phase ||
-      request.litFraction || request.normal) {
+  if (light) {
     self.DrawLight(request, capture);
   }
   return capture;
@@ -501,6 +585,7 @@ dspace::Capture vtkDspaceViewport::GetCapture(const dspace::CaptureRequest& requ
 
 std::vector<dspace::ObjectVisibility> vtkDspaceViewport::Explain() {
   Internals& self = *this->Impl;
+  self.RequireNoLens("an explanation");
   const dspace::DrawFilter filter = self.Filter({});
   self.DrawLabels(self.labels, filter);
   return dspace::ExplainView(*self.scene, self.labels.View(), filter, self.labels.Labels());
@@ -511,11 +596,18 @@ dspace::PickResult vtkDspaceViewport::Pick(double x, double y, int radius) {
   dspace::CheckPick(self.Object(), x, y, radius, self.width, self.height);
   dspace::DrawFilter filter = self.Filter({});
   filter.pickableOnly = true;
+  if (self.lens && !self.FollowLens(x, y, radius)) {
+    return {};
+  }
   self.DrawLabels(self.labels, filter);
   std::array<int, 2> pixel;
   dspace::PickResult pick = self.labels.Pick(*self.scene, x, y, radius, pixel);
   if (pick.object == 0) {
     return pick;
+  }
+  if (self.lens) { // from the source's axes to the camera's
+    pick.p_camera = self.lens->Lens().sources[self.labelledSource].X_CF.Apply(pick.p_camera);
+    pick.depth = pick.p_camera.z();
   }
   const std::vector<std::string> parts = PartsOf(self.scene->Object(pick.object));
   const bool same = std::all_of(parts.begin(), parts.end(),

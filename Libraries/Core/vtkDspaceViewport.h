@@ -30,6 +30,12 @@
 #include <dspace/scene/controls/Navigation.h>
 #endif
 
+#ifndef __VTK_WRAP__
+namespace dspace {
+struct ViewLens;
+}
+#endif
+
 class vtkDspaceRenderContext;
 class vtkRenderer;
 class vtkRenderWindow;
@@ -70,6 +76,13 @@ public:
   const std::string& GetCamera() const;
   /// Looks from a pose with a projection of the caller's in place of the vantage's camera.
   void SetFixedView(const dspace::CameraPose& camera, const dspace::Projection& projection);
+  /// Makes the lens for a size in pixels; may throw Error.
+  using LensMaker = std::function<std::shared_ptr<const dspace::ViewLens>(int, int)>;
+  /// Shows the camera's view through a lens, in place of the camera's projection; made anew for
+  /// each size. Empty: none. Pictures then have no captions, no props of GetRenderer(), and a
+  /// background of one colour. Throws what the maker throws, and Error(InvalidArgument) where a
+  /// source view is larger than OpenGL draws.
+  void SetLens(LensMaker maker);
   void Resize(int width, int height);
   void SetVisible(bool visible);
   /// sRGB, 0 to 1; with `top`, a vertical gradient.
@@ -119,11 +132,14 @@ public:
   /// Throws Error(Internal) with the message of a pipeline of a prop that fails.
   bool IsOutdated();
 
-  /// The picture, and other planes, of the scene as it is now (rendered if need be).
+  /// The picture, and other planes, of the scene as it is now (rendered if need be). Through a lens
+  /// colour alone; throws Error(Unsupported) for other planes.
   dspace::Capture GetCapture(const dspace::CaptureRequest& request);
-  /// Says of each object whether and why it is not seen in the viewport's picture.
+  /// Says of each object whether and why it is not seen in the viewport's picture. Throws
+  /// Error(Unsupported) for a picture through a lens.
   std::vector<dspace::ObjectVisibility> Explain();
-  /// Picks the object at a pixel, or the nearest one within `radius` pixels if there is none.
+  /// Picks the object at a pixel, or the nearest one within `radius` pixels if there is none;
+  /// through a lens at what the pixel's own ray meets first.
   dspace::PickResult Pick(double x, double y, int radius = 0);
   /// Makes this viewport the window's current one and calls `f` with it.
   void Run(const std::function<void(vtkRenderWindow*)>& f);

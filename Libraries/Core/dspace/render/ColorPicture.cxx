@@ -150,8 +150,11 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
                                                   this->Context_->GetDrawers(), statistics);
   }
   this->List_.Build(scene, view, request.filter);
-  this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);
-  this->Complete_ &= this->Drawer_->DrawShadows(scene, this->List_, view, samples);
+  this->Complete_ = true;
+  if (!request.instead) {
+    this->Complete_ = this->Drawer_->Prepare(this->List_, view, samples);
+    this->Complete_ &= this->Drawer_->DrawShadows(scene, this->List_, view, samples);
+  }
   this->ActivateScene();
   if (this->Renderer_->GetViewProps()->GetNumberOfItems() > 0) {
     MirrorCamera(scene, view, this->Renderer_);
@@ -168,8 +171,12 @@ void ColorPicture::Draw(const std::string& object, const Scene& scene, const Req
   std::vector<Caption> captions;
   this->Renderer_->DrawScene = [&] {
     try {
-      this->DrawScene(view, request);
-      if (request.overlays) { // the axes take the depth
+      if (request.instead) {
+        request.instead();
+      } else {
+        this->DrawScene(view, request);
+      }
+      if (request.overlays && !request.instead) { // the axes take the depth
         captions = this->Drawer_->Captions(this->List_, view, this->DrawnTarget(), samples);
       }
       if (request.axes) {

@@ -43,6 +43,9 @@ public:
     int samples = 1;
     DrawFilter filter;
     SceneDrawer::Background background;
+    // Draws into what is bound in place of the scene, in a picture of one sample; none: the scene
+    // is drawn, with its captions.
+    std::function<void()> instead = {};
     bool overlays = true;       // props of the overlay renderer
     CornerAxes* axes = nullptr; // none: not drawn
     // With the filter that the scene was drawn with (DrawList::Filter), where overlays are drawn.

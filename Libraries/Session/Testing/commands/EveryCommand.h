@@ -208,7 +208,7 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(set_viewport { viewport: "VIEW" samples: 2 background { b: 1 } ornaments: false
             shadows: true shadow_cascades: 3 shadow_map_size: 512 shadow_distance: 50 fill: 0.5
             exposure: 2 automatic_exposure: true tone: FILMIC cascade_colors: true
-            navigation: WALK eye_height: 2 walk_speed: 3 })",
+            navigation: WALK eye_height: 2 walk_speed: 3 lens: "" })",
        {}},
       {R"(set_viewport_fragment { viewport: "VIEW" fragment: "physical" visible: false })", {}},
       {R"(set_text_table { viewport: "VIEW" name: "table" row { label: "b" value: "2" digits: 3 }

@@ -12,6 +12,7 @@ from dspace.cameras.image_file import write_image
 from dspace.cameras.images import PLANES, UNITS
 from dspace.cameras.model import CameraModel
 from dspace.cameras.sensor import Sensor
+from dspace.cameras.shutter import Shutter
 from dspace.datasets.labels import annotations
 from dspace.errors import NotFound
 from dspace.frames.poses import Pose
@@ -65,6 +66,7 @@ class Stage:
         self.models = [CameraModel.from_json(json.dumps(each["model"])) for each in job.cameras]
         sensor = job.content["sensor"]
         self.sensor = sensor and Sensor(**sensor["settings"])
+        self.shutter = job.content["shutter"] and Shutter(**job.content["shutter"])
 
     def scene(self, time):
         """The scene of the job at a time."""
@@ -106,7 +108,7 @@ class Stage:
         if "counts" in content["planes"]:
             planes.add("radiance")
         wanted = {name: name in planes for name in PLANES}
-        picture = scene.simulate_image(model, samples=content["samples"], exposure=content["exposure"], **wanted, **place)
+        picture = self.taken(scene, time, model, self.job.cameras[index]["line_s"], place, wanted)
         if "counts" in content["planes"]:
             picture["counts"] = self.sensor.expose(picture["radiance"], model, seed=content["sensor"]["seed"], frame=number)
         name, files = self.job.cameras[index]["name"], {}
@@ -124,6 +126,19 @@ class Stage:
                   "size": list(model.size), "files": files, "annotations": self.annotations(scene, picture.get("label"))}
         atomic_write(os.path.join(folder, KIND.last(number)), json.dumps(record, sort_keys=True).encode())
 
+    def taken(self, scene, time, model, line_s, place, wanted):
+        """The planes of a piece. The run is at its time before and after."""
+        settings = {"samples": self.job.content["samples"], "exposure": self.job.content["exposure"], **wanted}
+        if model.type == "line_scan":
+            def at(line):
+                self.source.advance(time + line_s * line)
+            picture = scene.simulate_lines(model, place["frame"], at if line_s else None, **settings)
+            self.source.advance(time)
+            return picture
+        if self.shutter:
+            return scene.simulate_exposure(self.shutter, lambda t: self.source.advance(time + t), model, **settings, **place)
+        return scene.simulate_image(model, **settings, **place)
+
     def annotations(self, scene, labels):
         if not self.job.content["categories"]:
             return []
@@ -132,4 +147,4 @@ class Stage:
         for number, category in enumerate(self.job.content["categories"], 1):
             categories.append((number, {id: name for name, id in objects.items()
                                         if any(fnmatch.fnmatchcase(name, each) for each in category["objects"])}))
-        return annotations(np.asarray(labels), categories)
+        return annotations(np.asarray(labels), categories, self.job.content["masks"] == "compressed")

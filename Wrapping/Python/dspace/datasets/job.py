@@ -11,13 +11,15 @@ from dspace._core.traits import SAMPLES
 from dspace.cameras.images import PLANES
 from dspace.cameras.model import CameraModel
 from dspace.cameras.sensor import Sensor
+from dspace.cameras.shutter import Shutter
 from dspace.errors import Corrupt, Error, InvalidArgument, Io
 from dspace.frames.poses import Pose, quaternion_of_matrix
 
 MOST = 10**6  # pieces
 TOP = {"run": str, "scene": str, "times": (list, dict), "planes": list, "samples": int, "exposure": (int, float),
-       "floats": str, "camera": list, "pose": list, "sensor": dict, "category": list}
-TABLES = {"camera": {"name": str, "model": str, "camera": str, "size": list, "frame": str, "through": str},
+       "floats": str, "masks": str, "camera": list, "pose": list, "sensor": dict, "shutter": dict, "category": list}
+TABLES = {"camera": {"name": str, "model": str, "camera": str, "size": list, "frame": str, "through": str,
+                     "line_s": (int, float)},
           "pose": {"position": list, "quaternion": list, "eye": list, "target": list, "up": list},
           "category": {"name": str, "objects": list}}
 WORDS = {str: "a text", list: "a list", int: "a whole number", dict: "a table"}
@@ -64,6 +66,15 @@ class Job:
         number, camera = divmod(number, len(self.cameras))
         time, pose = divmod(number, max(len(self.content["poses"]), 1))
         return self.content["times"][time], pose if self.content["poses"] else None, camera
+
+    def span(self, number):
+        """The times [s], from the piece's own, of the first and the last state of the run that a piece shows."""
+        _, _, index = self.parts(number)
+        camera, shutter = self.cameras[index], self.content["shutter"]
+        if camera["line_s"]:
+            return 0.0, camera["line_s"] * (camera["model"]["model"]["height"] - 1)
+        reach = 0.5 * (shutter["exposure_s"] + shutter["readout_s"]) if shutter else 0.0
+        return -reach, reach
 
     @property
     def labels(self):
@@ -150,8 +161,12 @@ class _Reader:
         floats = values.get("floats", "tif")
         if floats not in ("tif", "exr"):
             self.reject(f"floats is {floats!r}; accepted: 'tif', 'exr'", key="floats")
+        masks = values.get("masks", "lists")
+        if masks not in ("lists", "compressed"):
+            self.reject(f"masks is {masks!r}; accepted: 'lists', 'compressed'", key="masks")
         content = {"scene": values.get("scene", ""), "times": self.times(values["times"]), "planes": list(planes),
-                   "samples": samples, "exposure": float(exposure), "floats": floats, "sensor": sensor,
+                   "samples": samples, "exposure": float(exposure), "floats": floats, "masks": masks, "sensor": sensor,
+                   "shutter": self.shutter(values, sensor),
                    "poses": self.each(values, "pose", self.pose), "cameras": self.each(values, "camera", self.camera),
                    "categories": self.each(values, "category", self.category)}
         for table, what in (("cameras", "camera"), ("categories", "category")):
@@ -164,6 +179,15 @@ class _Reader:
             if content["poses"] and through:
                 self.reject(f"camera {camera['name']!r} stands through {through!r}, and the job has [[pose]]; accepted: one of them",
                             "camera", index, "through")
+        if (content["shutter"] or any(each["line_s"] for each in content["cameras"])) and file != run:
+            self.reject(f"run is {values['run']!r}, which goes forward alone, and exposures and lines overlap; accepted: a recording",
+                        key="run")
+        for index, camera in enumerate(content["cameras"]):
+            scans = camera["model"]["model"]["type"] == "line_scan"
+            for given, what in ((content["shutter"], "[shutter]"), (content["poses"], "[[pose]]"), (camera["through"], "through")):
+                if scans and given:
+                    self.reject(f"camera {camera['name']!r} is a line scan, and the job has {what}; accepted: one of them, and the "
+                                "model's own poses", "camera", index)
         job = Job(content, run)
         if job.total > MOST:
             self.reject(f"{job.total} images; accepted: up to {MOST} for each plane", key="times")
@@ -228,8 +252,12 @@ class _Reader:
             self.reject(f"camera {values['name']!r} has no size of its image; accepted: size = [width, height]", *where)
         if "frame" in values and "through" in values:
             self.reject("frame and through are given; accepted: one of them", *where, "through")
+        line_s = float(values.get("line_s", 0.0))
+        if not 0 <= line_s < float("inf") or line_s and model.type != "line_scan":
+            self.reject(f"line_s is {line_s:g}; accepted: seconds from line to line, 0 or above, of a model of type line_scan", *where,
+                        "line_s")
         return {"name": values["name"], "model": json.loads(model.json), "frame": values.get("frame", ""),
-                "through": values.get("through", "")}
+                "through": values.get("through", ""), "line_s": line_s}
 
     def category(self, values, index):
         for key in ("name", "objects"):
@@ -239,6 +267,24 @@ class _Reader:
             self.reject(f"objects is {values['objects']!r}; accepted: patterns of names, such as 'rock *'", "category", index,
                         "objects")
         return {"name": values["name"], "objects": values["objects"]}
+
+    def shutter(self, values, sensor):
+        if "shutter" not in values:
+            return None
+        settings = dict(values["shutter"])
+        accepted = ("exposure_s", "readout_s", "direction", "samples", "bands")
+        for key in settings:
+            if key not in accepted:
+                self.reject(f"unknown {key!r}; accepted: {', '.join(accepted)}", "shutter", 0, key)
+        exposed = sensor and sensor["settings"]["exposure_s"]
+        if exposed:
+            settings.setdefault("exposure_s", exposed)
+        if "exposure_s" not in settings:
+            self.reject("there is no exposure_s; accepted: exposure_s, here or in [sensor]", "shutter", 0)
+        made = self.guard(lambda: Shutter(**settings), "shutter", 0)
+        if exposed and made.exposure_s != exposed:
+            self.reject(f"exposure_s is {made.exposure_s:g}; accepted: the sensor's, {exposed:g}", "shutter", 0, "exposure_s")
+        return {key: getattr(made, key) for key in accepted}
 
     def sensor(self, values):
         if "sensor" not in values:

@@ -71,6 +71,13 @@ def check_run(job):
             if not first - 1e-9 <= time <= last + 1e-9:
                 message = f"the time {time:g} s is outside of the run, {first:g} to {last:g} s; accepted: times within"
                 where.reject(message, key="times") if where else reject("data set", "the time", time, f"{first:g} to {last:g} s")
+        for number in range(job.total):
+            time, _, index = job.parts(number)
+            begin, end = job.span(number)
+            if time + begin < first - 1e-9 or time + end > last + 1e-9:
+                message = (f"at {time:g} s camera {job.cameras[index]['name']!r} is exposed from {time + begin:g} to {time + end:g} s, and "
+                           f"the run is from {first:g} to {last:g} s; accepted: exposures within")
+                where.reject(message, key="times") if where else reject("data set", "the time", time, f"{first:g} to {last:g} s")
         stage = Stage(job, source)
         scene = guard(lambda: stage.scene(job.content["times"][0]), "", 0, "scene")
         for index in range(len(job.cameras)):
@@ -87,8 +94,9 @@ def _write_manifest(job, folder):
             records.append(json.load(file))
     content = job.content
     manifest = {"kind": "dspace data set", "dspace": __version__, "planes": content["planes"], "samples": content["samples"],
-                "exposure": content["exposure"], "sensor": content["sensor"], "categories": content["categories"],
-                "cameras": [{"name": each["name"], "frame": each["frame"], "through": each["through"], "calibration": each["model"]}
+                "exposure": content["exposure"], "sensor": content["sensor"], "shutter": content["shutter"], "categories": content["categories"],
+                "cameras": [{"name": each["name"], "frame": each["frame"], "through": each["through"], "line_s": each["line_s"],
+                             "calibration": each["model"]}
                             for each in content["cameras"]],
                 "images": [{key: value for key, value in record.items() if key != "annotations"} for record in records]}
     atomic_write(folder.path(MANIFEST), json.dumps(manifest, indent=1, sort_keys=True).encode())

@@ -13,6 +13,7 @@ from dspace.objects.fragments import Fragment
 from dspace.proto import commands_pb2 as pb
 from dspace.proto import service_pb2
 from dspace.scene.legends import ViewportLegends, put_value
+from dspace.scene.lens import ViewportLens
 from dspace.scene.look import ViewportLook
 from dspace.scene.navigation import ViewportNavigation
 from dspace.terrain.coordinates import coordinates_of
@@ -46,7 +47,7 @@ class Pick:
     fields: object = None  # on terrain: the values of its fields, a dict by name; NaN: no data
 
 
-class Viewport(ViewportLook, ViewportNavigation):
+class Viewport(ViewportLook, ViewportNavigation, ViewportLens):
     """A picture of a scene. Pixel (0, 0) is the centre of the top-left pixel."""
 
     def __init__(self, client, name):

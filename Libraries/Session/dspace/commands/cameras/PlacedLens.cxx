@@ -64,22 +64,25 @@ void SetSize(dspace::CameraModel& model, int width, int height, bool scale) {
 
 } // namespace
 
+dspace::CameraModel ParseModel(const std::string& json) {
+  if (json.size() > MostModelBytes) {
+    Reject("camera model",
+           "the model has " + std::to_string(json.size()) + " bytes; accepted: up to 65,536");
+  }
+  const std::vector<dspace::CameraModel> models = ParseCameraJson(json, "camera model");
+  if (models.size() != 1) {
+    Reject("camera model", "it holds " + std::to_string(models.size()) + " models; accepted: one");
+  }
+  return models.front();
+}
+
 PlacedLens PlaceLens(const Context& context, const v1::CameraModel& from) {
   PlacedLens placed;
   const Scene& scene = context.GetScene();
   const std::string vantage = from.vantage().empty() ? DefaultVantage : from.vantage();
   const int width = ToInt(from.width()), height = ToInt(from.height());
   if (!from.model().empty()) {
-    if (from.model().size() > MostModelBytes) {
-      Reject("camera model", "the model has " + std::to_string(from.model().size()) +
-                                 " bytes; accepted: up to 65,536");
-    }
-    const std::vector<dspace::CameraModel> models = ParseCameraJson(from.model(), "camera model");
-    if (models.size() != 1) {
-      Reject("camera model",
-             "it holds " + std::to_string(models.size()) + " models; accepted: one");
-    }
-    placed.model = models.front();
+    placed.model = ParseModel(from.model());
     SetSize(placed.model, width, height, from.scale());
   } else if (from.own_pose()) {
     Reject("camera model", "own_pose is set without a model; accepted: a model with it");

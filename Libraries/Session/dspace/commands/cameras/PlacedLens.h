@@ -2,6 +2,8 @@
 #ifndef DSPACE_SESSION_PLACED_LENS_H
 #define DSPACE_SESSION_PLACED_LENS_H
 
+#include <string>
+
 #include <dspace/camera/CameraModel.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/proto/lenses.pb.h>
@@ -14,6 +16,9 @@ struct PlacedLens {
   dspace::CameraModel model;
   CameraPose camera; // X_FC, scale 1
 };
+
+// The one model that JSON holds. Throws Error: Corrupt, Unsupported or InvalidArgument.
+dspace::CameraModel ParseModel(const std::string& json);
 
 // Throws Error: NotFound for a vantage, camera or frame; Corrupt, Unsupported or InvalidArgument
 // for the model; InvalidArgument for a size that is missing or is not the model's.

@@ -4,6 +4,8 @@
 
 #include <dspace/Checks.h>
 #include <dspace/clipmap/gl/ClipmapDrawing.h>
+#include <dspace/commands/cameras/PlacedLens.h>
+#include <dspace/commands/viewports/ShownLens.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/render/bodies/BodyDrawer.h>
 #include <dspace/render/props/VtkPropDrawer.h>
@@ -120,6 +122,7 @@ void ViewportCommands::Clear() {
     viewport->SetBarShown({});
   }
   this->Viewports_.clear();
+  this->Lenses_.clear();
   this->LensPictures_.Clear();
   this->RenderContext_ = nullptr;
 }
@@ -226,6 +229,7 @@ void ViewportCommands::Remove(const Context& context, v1::RemoveViewport& comman
   this->Get(command.viewport()).SetBarShown({});
   this->LiveTables_.RemoveViewport(command.viewport());
   this->Controllers_.erase(command.viewport());
+  this->Lenses_.erase(command.viewport());
   this->Viewports_.erase(command.viewport());
   const auto scene = context.state.scenes.find(context.state.viewports[command.viewport()].scene);
   if (scene != context.state.scenes.end()) {
@@ -271,7 +275,16 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
     top = ToColor(command.background_top(), label);
   }
   const Navigation navigation = ToNavigation(command, viewport.GetNavigation(), label);
-  viewport.SetLook(ToLook(command, viewport.GetLook(), label)); // the last that can fail
+  const ViewLook before = viewport.GetLook();
+  viewport.SetLook(ToLook(command, before, label));
+  if (command.has_lens()) {
+    try {
+      this->SetLens(command.viewport(), command.lens()); // the last that can fail
+    } catch (...) {
+      viewport.SetLook(before);
+      throw;
+    }
+  }
   viewport.SetNavigation(navigation);
   if (vantage != place.vantage) {
     viewport.SetCamera("");
@@ -299,6 +312,17 @@ void ViewportCommands::Set(const Context& context, v1::SetViewport& command) {
     viewport.SetCornerAxes(command.corner_axes());
     place.cornerAxes = command.corner_axes();
   }
+}
+
+void ViewportCommands::SetLens(const std::string& name, const std::string& json) {
+  if (json.empty()) {
+    this->Get(name).SetLens({});
+    this->Lenses_.erase(name);
+    return;
+  }
+  this->Get(name).SetLens(
+      [model = ParseModel(json)](int width, int height) { return ShowLens(model, width, height); });
+  this->Lenses_[name] = json;
 }
 
 void ViewportCommands::SetFragment(const Context& context, v1::SetViewportFragment& command) {
@@ -343,6 +367,8 @@ void ViewportCommands::Describe(const Context& context, v1::DescribeViewport& co
   info->set_navigation(static_cast<v1::SetViewport::Navigation>(navigation.kind));
   info->set_eye_height(navigation.eyeHeight);
   info->set_walk_speed(navigation.walkSpeed);
+  const auto lens = this->Lenses_.find(command.viewport());
+  info->set_lens(lens == this->Lenses_.end() ? "" : lens->second);
   for (const std::string& fragment : place.hiddenFragments) {
     info->add_hidden_fragment(fragment);
   }

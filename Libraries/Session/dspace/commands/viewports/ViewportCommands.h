@@ -52,6 +52,7 @@ private:
   void Resize(const Context& context, v1::ResizeViewport& command);
   void Move(const Context& context, v1::MoveViewport& command);
   void Set(const Context& context, v1::SetViewport& command);
+  void SetLens(const std::string& viewport, const std::string& json); // empty: none
   void SetFragment(const Context& context, v1::SetViewportFragment& command);
   void SetTable(const Context& context, v1::SetTextTable& command);
   void RemoveTable(const Context& context, v1::RemoveTextTable& command);
@@ -86,6 +87,7 @@ private:
   vtkSmartPointer<vtkDspaceRenderContext> RenderContext_;
   std::map<std::type_index, CustomDrawers::Maker> Drawers_; // of plug-ins
   std::map<std::string, vtkSmartPointer<vtkDspaceViewport>> Viewports_;
+  std::map<std::string, std::string> Lenses_;          // JSON, of viewports that have one
   std::map<std::string, OrbitController> Controllers_; // of viewports that have received events
   LensPictures LensPictures_;
   LiveTables LiveTables_;
