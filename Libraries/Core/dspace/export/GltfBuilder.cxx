@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include <dspace/Error.h>
-#include <dspace/export/PngBytes.h>
+#include <dspace/import/files/PngBytes.h>
 #include <dspace/scene/LinearLight.h>
 #include <dspace/scene/PartLook.h>
 

@@ -6,11 +6,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include <png.h>
-
 #include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
 #include <dspace/import/files/ImageCodec.h>
+#include <dspace/import/files/PngBytes.h>
 
 namespace dspace {
 namespace {
@@ -49,22 +48,17 @@ using Sample = PictureFile::Sample;
 // With libpng, since most pictures are PNG files and need no other library: it writes no date.
 void WritePng(const std::string& path, int width, int height,
               const std::vector<std::uint8_t>& rgba) {
-  std::vector<std::uint8_t> rgb(rgba.size() / 4 * 3);
+  Image image;
+  image.name = path;
+  image.width = width;
+  image.height = height;
+  image.channels = 3;
+  image.pixels.resize(rgba.size() / 4 * 3);
   for (std::size_t from = 0, to = 0; from < rgba.size(); from += 4, to += 3) {
-    std::copy_n(rgba.data() + from, 3, rgb.data() + to);
+    std::copy_n(rgba.data() + from, 3, image.pixels.data() + to);
   }
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = png_uint_32(width);
-  image.height = png_uint_32(height);
-  image.format = PNG_FORMAT_RGB;
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::vector<std::uint8_t> bytes(size);
-  if (!png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr)) {
-    throw Error(Error::Kind::Internal, Label(path),
-                "cannot be encoded: " + std::string(image.message));
-  }
-  AtomicFile::Save(path, bytes.data(), size);
+  const std::vector<std::uint8_t> bytes = PngBytes(image);
+  AtomicFile::Save(path, bytes.data(), bytes.size());
 }
 
 void RequireSize(const std::string& path, int width, int height, int channels, std::size_t values) {

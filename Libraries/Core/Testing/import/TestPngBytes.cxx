@@ -1,5 +1,5 @@
 // PNG files in memory, read by libpng and by OpenImageIO.
-#include <dspace/export/PngBytes.h>
+#include <dspace/import/files/PngBytes.h>
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Images as PNG files in memory.
-#ifndef DSPACE_EXPORT_PNG_BYTES_H
-#define DSPACE_EXPORT_PNG_BYTES_H
+#ifndef DSPACE_IMPORT_PNG_BYTES_H
+#define DSPACE_IMPORT_PNG_BYTES_H
 
 #include <cstdint>
 #include <vector>
