@@ -353,6 +353,61 @@ TEST_F(ShadowTest, TwoViewportsOfOneSceneHaveTheirOwn) {
   EXPECT_EQ(with->GetCapture({}).color, lit);
 }
 
+// A map is drawn again for exactly that which changes it: the picture is that of a viewport which
+// draws all of them.
+TEST_F(ShadowTest, MapsInWhichNothingChangesAreKept) {
+  AddBox({0, 0, 0.5}, {0.4, 0.4, 1.0});
+  AddBox({30, 2, 4}, {3, 3, 8});
+  // Near ground and far ground, so that the near box throws no shadow on what a farther map serves.
+  scene->RemoveObject(this->ground);
+  scene->AddObject(Object("near ground", RootFrame, MakePlane(6, 6), this->white));
+  GraphicsObject farGround = Object("far ground", RootFrame, MakePlane(30, 60), this->white);
+  farGround.X_FO.translation() = Eigen::Vector3d(30, 0, 0);
+  scene->AddObject(farGround);
+  SetSun(200, 30);
+  this->look.shadows.size = 512;
+  Stand({-3.0, -2.0, 2.0}, {4, 0.5, 0});
+  auto kept = View(320, 180);
+  kept->SetLook(this->look);
+  int number = 0;
+  const auto compare = [&](const std::string& what) {
+    SCOPED_TRACE(what);
+    const Capture after = kept->GetCapture({});
+    const auto counts = std::make_pair(context->GetStatistics().shadowMapsDrawn,
+                                       context->GetStatistics().shadowMapsKept);
+    auto fresh = vtkSmartPointer<vtkDspaceViewport>::New();
+    fresh->Initialize(context, scene, "fresh " + std::to_string(++number), "main", 320, 180);
+    fresh->SetSamples(1);
+    fresh->SetLook(this->look);
+    EXPECT_EQ(after.color, fresh->GetCapture({}).color);
+    return counts;
+  };
+  const int all = compare("all").first;
+  EXPECT_EQ(all, 4);
+  const FrameId near = scene->Frames().Find("box 0");
+  const FrameId far = scene->Frames().Find("box 1");
+  scene->Frames().SetLocalPose(near, At(0.1, 0, 0.5));
+  const auto [nearDrawn, nearKept] = compare("the near box moves");
+  EXPECT_GT(nearDrawn, 0);
+  EXPECT_GT(nearKept, 0);
+  EXPECT_EQ(nearDrawn + nearKept, all);
+  scene->Frames().SetLocalPose(far, At(30, 2.5, 4));
+  const auto [farDrawn, farKept] = compare("the far box moves");
+  EXPECT_GT(farDrawn, 0);
+  EXPECT_GT(farKept, 0);
+  SetSun(201, 30);
+  EXPECT_EQ(compare("the Sun moves").second, 0);
+  scene->SetObjectVisible(scene->FindObject("box 1"), false);
+  compare("the far box is hidden");
+  scene->SetObjectVisible(scene->FindObject("box 1"), true);
+  compare("it is shown again");
+  Stand({-3.0, -2.0, 2.1}, {4, 0.5, 0});
+  EXPECT_EQ(compare("the camera moves").second, 0);
+  this->look.shadows.size = 1024;
+  kept->SetLook(this->look);
+  EXPECT_EQ(compare("maps are larger").second, 0);
+}
+
 // A flight in 60 small steps: a point of the ground keeps its light, but for the edges of shadows.
 TEST_F(ShadowTest, NothingFlickersWhileTheCameraMoves) {
   AddBox({0, 0, 0.5}, {0.4, 0.4, 1.0});

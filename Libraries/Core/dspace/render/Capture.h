@@ -73,6 +73,8 @@ struct RenderStatistics {
   std::uint64_t trianglesDrawn = 0;        // in the last frame drawn
   std::uint64_t drawCalls = 0;             // in the last frame drawn
   int translucentLayers = 0;               // peeled in the last frame drawn
+  int shadowMapsDrawn = 0;                 // in the last frame drawn, those of ground too
+  int shadowMapsKept = 0;                  // of an earlier frame, since nothing in them has changed
 };
 
 } // namespace dspace

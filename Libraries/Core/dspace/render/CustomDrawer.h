@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <dspace/render/Captions.h>
+#include <dspace/render/DrawKey.h>
 #include <dspace/render/DrawList.h>
 
 class vtkDspaceHubWindow;
@@ -56,6 +57,10 @@ public:
   virtual bool MixesDisplayColors(const CustomDrawing&) { return false; }
   // Also into the Sun's shadow maps: `drawing.view.clip` is then set, and no label is kept.
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
+  // Adds what DrawLabels() draws into a shadow map from, besides `drawing.view`'s clip, texel and
+  // takes. Returns false if it does not know: such maps are drawn anew for each picture. After
+  // Prepare().
+  virtual bool AddTo(DrawKey&, const CustomDrawing&) { return false; }
   // Photometric angles of what is lit, 0 where they are not known, as Photometry.glsl has them
   // (SurfaceShaders::Angles), and depth. Returns false, drawing nothing, if it knows none: what
   // DrawLabels() draws then hides the rest.

@@ -309,6 +309,7 @@ bool SceneDrawer::PrepareCasters(const DrawList& casters, const DrawView& view) 
 
 bool SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView& view,
                               int samples) {
+  this->Statistics_.shadowMapsDrawn = this->Statistics_.shadowMapsKept = 0;
   view.shadows.reset();
   view.shadowTiles.reset();
   view.shadowGrounds.reset();
@@ -346,7 +347,8 @@ bool SceneDrawer::DrawShadows(const Scene& scene, const DrawList& list, DrawView
   CascadeFit fit = FitCascades(view.projection, view.width, view.height, *list.Sun(), nearest,
                                farthest, view.look.shadows);
   fit.ground = this->Grounds_.size() > 1 || (!this->Grounds_.empty() && others);
-  const bool complete = this->Shadows_.Update(scene, list, view, std::move(fit), *this);
+  const bool complete =
+      this->Shadows_.Update(scene, list, view, std::move(fit), *this, this->Statistics_);
   this->Window_->GetState()->vtkglEnable(GL_BLEND);
   this->Shaders_.SetShadowMaps(this->Shadows_.Texture(), this->Shadows_.Tiles());
   return complete;
@@ -378,6 +380,38 @@ void SceneDrawer::Draw(const DrawList& casters, const DrawView& view, int ground
       custom->second.drawer->DrawLabels(this->Drawing(object, casters, view, 1));
     }
   }
+}
+
+bool SceneDrawer::AddTo(DrawKey& key, const DrawList& casters, const DrawView& view, int ground) {
+  if (ground == ShadowMaps::NoGround) {
+    for (const DrawBatch& batch : casters.Batches()) {
+      if (batch.shader) {
+        return false; // it may draw what it likes
+      }
+      key.AddShared(batch.mesh);
+      key.AddShared(batch.texture);
+      for (const bool look :
+           {batch.repeatTexture, batch.wireframe, batch.billboard, batch.solid, batch.mirrored}) {
+        key.Add(look);
+      }
+      key.Add(batch.lineWidth);
+      key.Add(batch.pointSize);
+      key.Add(batch.first);
+      key.Add(batch.count);
+    }
+    key.AddBytes(casters.Instances().data(), casters.Instances().size() * sizeof(DrawInstance));
+  }
+  bool known = true;
+  for (const DrawCustom& object : casters.Customs()) {
+    const auto custom = this->Customs_.find(object.object->custom.get());
+    if (custom != this->Customs_.end() && custom->second.drawer &&
+        this->GroundOf(object) == ground) {
+      key.Add(object.object->id);
+      key.AddMatrix(object.X_VO.matrix());
+      known = known && custom->second.drawer->AddTo(key, this->Drawing(object, casters, view, 1));
+    }
+  }
+  return known;
 }
 
 std::array<double, 2> SceneDrawer::SeenDepths(const DrawList& list, const DrawView& view) {

@@ -85,6 +85,7 @@ private:
   std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
                                const DrawView& view) override;
   void Draw(const DrawList& casters, const DrawView& view, int ground) override;
+  bool AddTo(DrawKey& key, const DrawList& casters, const DrawView& view, int ground) override;
   void DrawBackground(const Background& background, int height);
   void DrawTriangleOverScreen();
   void Upload(const DrawList& list);

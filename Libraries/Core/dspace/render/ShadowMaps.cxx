@@ -8,6 +8,7 @@
 #include "vtkOpenGLState.h"
 
 #include <dspace/Error.h>
+#include <dspace/render/Capture.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/SurfaceShaders.h>
 
@@ -75,6 +76,21 @@ private:
   double Beginning_ = 0.0; // [m]
 };
 
+void AddHulls(const std::vector<LightHull>& hulls, DrawKey& key) {
+  for (const LightHull& hull : hulls) {
+    key.Add(hull.points.size());
+    for (const Eigen::Vector3d& point : hull.points) {
+      key.AddMatrix(point);
+    }
+    key.Add(hull.radius);
+    for (const auto& plane : {hull.floor, hull.ceiling}) {
+      key.AddMatrix(plane.value_or(Eigen::Vector4d::Zero()));
+    }
+    key.Add(hull.parts);
+    key.AddMatrix(hull.X_VM);
+  }
+}
+
 } // namespace
 
 void ShadowMaps::Release() {
@@ -88,6 +104,7 @@ void ShadowMaps::Release() {
   this->TileLayers_ = 0;
   this->Framebuffers_.clear();
   this->Size_ = 0;
+  this->Keys_.clear();
 }
 
 void ShadowMaps::Resize(const std::string& viewport, int size, int count) {
@@ -183,7 +200,8 @@ void ShadowMaps::UploadTiles(const CasterTiles& tiles, int layer) const {
 
 // `texels`: of the map that need be drawn.
 void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
-                         const CascadeFit& fit, int k, int ground, Painter& painter) {
+                         const CascadeFit& fit, int k, int ground, Painter& painter,
+                         const std::vector<LightHull>& takers, RenderStatistics& statistics) {
   const CascadeFit::Cascade& cascade = fit.cascades[std::size_t(k)];
   const bool object = ground == NoGround;
   const int size = object ? fit.size : fit.GroundSize();
@@ -192,7 +210,7 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
       object ? Eigen::Array2i(0, 0) : Eigen::Array2i(k % across, k / across) * size;
   const Eigen::Array2i first(texels[0], texels[1]);
   const Eigen::Array2i extent = Eigen::Array2i(texels[2], texels[3]) - first;
-  const Eigen::Array2i place = corner + first;
+  const Eigen::Array2i start = corner + first;
   // Only those texels, so that what is beside them is culled.
   Eigen::Matrix4d part = Eigen::Matrix4d::Identity();
   for (const int axis : {0, 1}) {
@@ -201,11 +219,31 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
   }
   view.clip = part * fit.ClipFromView(cascade);
   view.texel = cascade.Texel(size);
+  const std::size_t place = std::size_t(ground + 1) * fit.cascades.size() + std::size_t(k);
+  this->Keys_.resize(std::max(this->Keys_.size(), place + 1));
+  std::optional<DrawKey>& present = this->Keys_[place];
+  DrawKey key;
+  key.AddBytes(texels.data(), sizeof texels);
+  key.AddMatrix(*view.clip);
+  key.AddMatrix(fit.sun.axes);
+  for (const int number : {size, view.width, view.height, view.samples}) {
+    key.Add(number);
+  }
+  AddHulls(takers, key);
+  if (!painter.AddTo(key, casters, view, ground)) {
+    present.reset();
+  } else if (present && *present == key) {
+    ++statistics.shadowMapsKept;
+    return;
+  } else {
+    present = std::move(key);
+  }
+  ++statistics.shadowMapsDrawn;
   vtkOpenGLState* state = this->Window_->GetState();
   const std::size_t layer = object ? std::size_t(k) : fit.cascades.size() + std::size_t(ground);
   state->vtkglBindFramebuffer(GL_FRAMEBUFFER, this->Framebuffers_[layer]);
-  state->vtkglViewport(place[0], place[1], extent[0], extent[1]);
-  state->vtkglScissor(place[0], place[1], extent[0], extent[1]);
+  state->vtkglViewport(start[0], start[1], extent[0], extent[1]);
+  state->vtkglScissor(start[0], start[1], extent[0], extent[1]);
   state->vtkglDepthMask(GL_TRUE);
   state->vtkglClearDepth(0.0);
   state->vtkglClear(GL_DEPTH_BUFFER_BIT);
@@ -216,7 +254,7 @@ void ShadowMaps::DrawMap(const DrawList& casters, DrawView view, const std::arra
 }
 
 bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
-                        Painter& painter) {
+                        Painter& painter, RenderStatistics& statistics) {
   vtkOpenGLState* state = this->Window_->GetState();
   DrawFilter filter = seen.Filter();
   filter.physicalOnly = true; // ornaments throw no shadow
@@ -282,7 +320,7 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
       }
       this->UploadTiles(tiles, k);
       if (!tiles.Empty()) {
-        this->DrawMap(list, map, tiles.Texels(), fit, k, NoGround, painter);
+        this->DrawMap(list, map, tiles.Texels(), fit, k, NoGround, painter, {}, statistics);
       }
       allTiles->push_back(std::move(tiles));
       CascadeFit coarse = fit;
@@ -299,13 +337,15 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
         this->UploadTiles(casting, count * (1 + ground) + k);
         if (!casting.Empty()) {
           map.takes = [&near](const LightHull& hull) { return near.Take(hull); };
-          this->DrawMap(list, map, near.Texels(), fit, k, ground, painter);
+          this->DrawMap(list, map, near.Texels(), fit, k, ground, painter,
+                        others[std::size_t(ground)], statistics);
           map.takes = {};
         }
         (*grounds)[std::size_t(ground)].tiles.push_back(std::move(casting));
       }
     }
   } catch (...) {
+    this->Keys_.clear();
     glDisable(GL_DEPTH_CLAMP);
     state->PopFramebufferBindings();
     throw;

@@ -2,8 +2,10 @@
 #ifndef DSPACE_RENDER_SHADOW_MAPS_H
 #define DSPACE_RENDER_SHADOW_MAPS_H
 
+#include <optional>
 #include <vector>
 
+#include <dspace/render/DrawKey.h>
 #include <dspace/render/DrawList.h>
 #include <dspace/render/shadows/CasterTiles.h>
 
@@ -12,6 +14,7 @@ class vtkDspaceHubWindow;
 namespace dspace {
 
 class GpuStore;
+struct RenderStatistics;
 
 // One layer of a depth texture a cascade, and one more for each ground (ShadowGround) with all of
 // its maps, cascade k at the place (k mod 4, k / 4) of its 4 x 4; 32-bit floats, 1 towards the Sun,
@@ -40,12 +43,16 @@ public:
     virtual std::vector<LightHull> Hulls(const DrawCustom& object, const DrawList& list,
                                          const DrawView& view) = 0; // CustomDrawer::Hulls()
     virtual void Draw(const DrawList& casters, const DrawView& view, int ground) = 0;
+    // Adds what Draw() draws from, besides the view's clip, texel and takes. Returns false if that
+    // is not known.
+    virtual bool AddTo(DrawKey& key, const DrawList& casters, const DrawView& view, int ground) = 0;
   };
-  // Draws all maps of a fit for what `seen` shows, and sets them in `view`. Extends the fit's
-  // ranges to the casters. Returns whether all casters' data were there. Throws Error(Resource)
-  // about `viewport` when there is no memory for the maps.
+  // Draws all maps of a fit for what `seen` shows, and sets them in `view`; a map whose casters,
+  // fit and receivers have not changed since it was drawn is kept. Extends the fit's ranges to the
+  // casters. Returns whether all casters' data were there. Throws Error(Resource) about `viewport`
+  // when there is no memory for the maps.
   bool Update(const Scene& scene, const DrawList& seen, DrawView& view, CascadeFit fit,
-              Painter& painter);
+              Painter& painter, RenderStatistics& statistics);
   unsigned int Texture() const { return this->Texture_; }
   // CasterTiles::Tops(): a layer a cascade, and as many for each ground.
   unsigned int Tiles() const { return this->Tiles_; }
@@ -59,8 +66,10 @@ private:
                                  Painter& painter) const;
   LightHull HullOf(const DrawBatch& batch, const DrawInstance& instance) const;
   void UploadTiles(const CasterTiles& tiles, int layer) const;
+  // `takers`: what takes the shadows of a ground's map.
   void DrawMap(const DrawList& casters, DrawView view, const std::array<int, 4>& texels,
-               const CascadeFit& fit, int k, int ground, Painter& painter);
+               const CascadeFit& fit, int k, int ground, Painter& painter,
+               const std::vector<LightHull>& takers, RenderStatistics& statistics);
 
   vtkDspaceHubWindow* Window_;
   GpuStore& Store_;
@@ -70,6 +79,9 @@ private:
   std::vector<unsigned int> Framebuffers_; // one a layer
   int Size_ = 0;
   std::vector<DrawList> Casters_; // one a layer
+  // Of the map that each place holds, k of the objects' and then k of each ground's; empty: nothing
+  // that could be kept.
+  std::vector<std::optional<DrawKey>> Keys_;
 };
 
 } // namespace dspace

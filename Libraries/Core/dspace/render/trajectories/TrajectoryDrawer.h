@@ -30,6 +30,7 @@ public:
   double NearestDepth(const CustomDrawing& drawing) override;
   void DrawColor(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
+  bool AddTo(DrawKey&, const CustomDrawing&) override { return true; } // lines throw no shadow
   void DrawTranslucent(const CustomDrawing& drawing, const RenderTarget& target) override;
   // The labels of ticks that are seen, of the longest intervals first, none over another.
   std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;

@@ -338,6 +338,7 @@ void ClipmapDrawer::UpdateAbout(Chart& chart, const Eigen::Vector3d& p_S,
   chart.state = chart.levels.Update(
       view, [&drawing, &chart](int level, const ClipmapUpdate& u, const ClipmapTexel* texels) {
         chart.ranges.Changed(level);
+        ++chart.uploads;
         for (int i = 0; i < u.width * u.height; ++i) {
           if (texels[i].hole < 1.0f) {
             chart.heights[0] = std::min<double>(chart.heights[0], texels[i].height);
@@ -395,6 +396,22 @@ void ClipmapDrawer::DrawColor(const CustomDrawing& drawing) {
 
 void ClipmapDrawer::DrawLabels(const CustomDrawing& drawing) {
   this->Draw(drawing, SurfaceShaders::Label);
+}
+
+bool ClipmapDrawer::AddTo(DrawKey& key, const CustomDrawing&) {
+  const Chart& chart = *this->Active_;
+  key.Add(this->ActiveIndex());
+  key.Add(chart.uploads);
+  key.Add(chart.state.finest);
+  key.AddMatrix(chart.state.place);
+  key.Add(chart.state.groundHeight);
+  key.Add(chart.state.distance);
+  key.Add(chart.state.cellSize);
+  for (int level = chart.state.finest; level < chart.levels.Count(); ++level) {
+    key.Add(chart.levels.Window(level).column);
+    key.Add(chart.levels.Window(level).row);
+  }
+  return true;
 }
 
 bool ClipmapDrawer::DrawAngles(const CustomDrawing& drawing) {

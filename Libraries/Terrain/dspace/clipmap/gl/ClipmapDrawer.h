@@ -35,6 +35,7 @@ public:
   void DrawColor(const CustomDrawing& drawing) override;
   bool MixesDisplayColors(const CustomDrawing& drawing) override;
   void DrawLabels(const CustomDrawing& drawing) override;
+  bool AddTo(DrawKey& key, const CustomDrawing& drawing) override;
   bool DrawAngles(const CustomDrawing& drawing) override;
   std::vector<Caption> Captions(const CustomDrawing& drawing, const RenderTarget& target) override;
 
@@ -49,6 +50,7 @@ private:
     ClipmapLevels::State state;
     std::array<double, 2> heights; // [m] that nothing that is drawn leaves; at first a guess
     ClipmapRanges ranges;
+    std::uint64_t uploads = 0; // of posts, so far
     unsigned int texture = 0;
     std::unique_ptr<ClipmapHorizon> horizon; // null: no shadows yet
     unsigned int horizonTexture = 0;
