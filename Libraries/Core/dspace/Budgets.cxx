@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t Mebi = std::uint64_t(1) << 20;
 constexpr std::uint64_t Gibi = std::uint64_t(1) << 30;
-constexpr std::size_t BudgetCount = 8;
+constexpr std::size_t BudgetCount = 9;
 
 std::array<std::atomic<std::uint64_t>, BudgetCount>& BudgetValues() {
   static std::array<std::atomic<std::uint64_t>, BudgetCount> values;
@@ -49,7 +49,9 @@ const std::vector<BudgetInfo>& Budgets() {
       {Budget::MosaicFiles, "mosaic_files", "the files that a mosaic makes be opened", 20000, 1,
        1000000000},
       {Budget::MosaicBytes, "mosaic_bytes", "the bytes of the document of a mosaic", 64 * Mebi, 1,
-       64 * Gibi}};
+       64 * Gibi},
+      {Budget::OpenMemory, "open_memory", "the bytes that opening a netCDF or HDF5 file takes",
+       512 * Mebi, Mebi, 1024 * Gibi}};
   return budgets;
 }
 

@@ -19,7 +19,8 @@ enum class Budget {
   RasterPixels,    // raster_pixels: columns times rows of one raster
   MosaicFiles,     // mosaic_files: files that a mosaic (VRT) of another process makes be opened in
                    // all, each as often as it is named: sources, their sources, and so on
-  MosaicBytes      // mosaic_bytes: of its document
+  MosaicBytes,     // mosaic_bytes: of its document
+  OpenMemory       // open_memory: bytes that opening a netCDF or HDF5 file takes (OpeningProbe.h)
 };
 
 struct BudgetInfo {

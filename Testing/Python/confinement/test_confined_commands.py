@@ -318,3 +318,52 @@ def test_a_movie_of_a_function_is_not_confined(tmp_path):
     movie_file(tmp_path / "movie.toml")
     done = dspace_command("movie", tmp_path / "movie.toml", "--run", f"{tmp_path}/run.py:run", "--out", tmp_path / "out" / "a")
     assert done.returncode == 0, done.stderr
+
+
+# --- A program that plays ---------------------------------------------------------------------------
+
+PLAYS = """
+import os
+import pathlib
+import sys
+import dspace
+
+def readers():
+    "How many processes that read models this one has started."
+    count = 0
+    for place in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            name, rest = place.read_text().rsplit(")", 1)
+        except OSError:
+            continue
+        count += "(dspace-import-w" in name and int(rest.split()[1]) == os.getpid()
+    return count
+
+model, run, player = sys.argv[1:]
+with dspace.Session() as session, session.record(run):
+    scene = session.scene()
+    scene.load(model, name="part")
+    scene.time = 1.0
+    print(readers())
+if player == "DspaceQt":
+    qt = dspace.vtk.vtkDspacePlayer()
+    assert qt.Open(os.fsencode(run), True) is not None
+    qt.Go(1)
+    print(readers(), qt.GetIndex())
+else:
+    with dspace.Playback(run) as playback:
+        playback.step(1000)
+        print(readers(), playback.index)
+"""
+
+
+@pytest.mark.parametrize("player", ["DspaceQt", "dspace.Playback"])
+def test_a_program_that_plays_reads_models_apart(tmp_path, player):
+    """An STL file is read in the process of its own user's session; one that a recording names never is. DspaceQt plays by
+    vtkDspacePlayer. Rasters and shapes of a played recording: test_dataset_gate.py."""
+    (tmp_path / "a.stl").write_text("solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+                                    "endloop\nendfacet\nendsolid a\n")
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", PLAYS, str(tmp_path / "a.stl"), str(tmp_path / "run.dspace"),
+                           player], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split("\n")[:2] == ["0", "1 1"]

@@ -17,6 +17,7 @@ def get():
     import_memory: bytes of the process that reads a model. import_seconds: its processor time, and its time by the
     clock. raster_pixels: columns times rows of one raster. mosaic_files: files that a mosaic (VRT) makes be opened in all,
     each as often as it is named, in `dspace serve` and playback; mosaic_bytes: of its document.
+    open_memory: bytes that opening a netCDF or HDF5 file takes, which is tried in a process apart first.
     """
     lines = vtk.vtkDspaceSession.GetLimits().splitlines()
     return {name: int(value) for name, value in (line.split() for line in lines)}

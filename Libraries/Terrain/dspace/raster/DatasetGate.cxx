@@ -19,6 +19,7 @@
 #include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/OpeningProbe.h>
 #include <dspace/raster/SelfContainedDrivers.h>
 #include <dspace/raster/UnderlyingFile.h>
 
@@ -264,10 +265,14 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
 
 // What GDAL opens by itself. No exception may pass through GDAL.
 GDALDataset* OpenForGdal(GDALOpenInfo* info) {
-  if (!FilesGuard::IsActive() || info->pszFilename[0] == '\0') {
+  if (info->pszFilename[0] == '\0') {
     return nullptr; // the other drivers' turn
   }
   try {
+    if (!FilesGuard::IsActive()) {
+      ProbeOpening(*info);
+      return nullptr;
+    }
     return OpenGuarded(info->pszFilename, unsigned(info->nOpenFlags), nullptr,
                        info->papszOpenOptions)
         .release();

@@ -29,7 +29,8 @@ enum class DatasetKind : std::uint8_t { Raster, Shapes, Any };
 // pointer) restricts the formats. Returns null where GDAL does not open it; GDAL's messages are in
 // the GdalErrors of the caller.
 //
-// Without a FilesGuard in this thread GDAL opens what it can. With one:
+// Without a FilesGuard in this thread GDAL opens what it can, netCDF and HDF5 after a trial in a
+// process apart (OpeningProbe.h). With one:
 // - The name must be that of a plain file or folder, of a file within an archive (/vsizip/,
 //   /vsitar/, /vsigzip/), or of a file on a server; the guard checks it.
 //   Documents in the place of a name, and names with a driver's prefix, are rejected.
