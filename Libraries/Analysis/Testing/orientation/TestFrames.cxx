@@ -468,6 +468,11 @@ TEST(Frames, RejectsLoopsUnknownFramesAndDamagedKernels) {
   const std::string what =
       ErrorOf([&] { dynamic.Rotation("A", "J2000", 0.0); }, Error::Kind::Unsupported);
   EXPECT_NE(what.find("dynamic"), std::string::npos) << what;
+  // Of class 1 are the built-in frames alone: their rotations are a table.
+  const Frames inertial(Text(a + "FRAME_1400000_CLASS = 1"));
+  const std::string which =
+      ErrorOf([&] { inertial.Rotation("A", "J2000", 0.0); }, Error::Kind::Unsupported);
+  EXPECT_NE(which.find("accepted: the inertial frames 1 to 21"), std::string::npos) << which;
   ErrorOf(
       [] {
         Frames(Text("BODY301_PM = 'x' BODY301_POLE_RA = 1 BODY301_POLE_DEC = 2"))

@@ -405,6 +405,11 @@ Frames::Link Frames::CkLink(const FrameInfo& info, double tdb) const {
 Frames::Link Frames::LinkOf(const FrameInfo& info, double tdb) const {
   switch (info.kind) {
   case FrameClass::Inertial: {
+    if (info.id < 1 || info.id > InertialFrameCount) {
+      throw Error(Error::Kind::Unsupported, Label(info),
+                  "a kernel defines it as inertial (class 1); accepted: the inertial frames 1 to " +
+                      std::to_string(InertialFrameCount) + ", which are built in");
+    }
     Link link;
     link.base = FrameJ2000;
     link.turn.rotation = InertialRotation(info.id);
