@@ -14,12 +14,14 @@
 #include <dspace/import/worker/ModelImport.h>
 #include <dspace/import/worker/UrdfBytes.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <thread>
 
 #include <sys/wait.h>
@@ -301,6 +303,40 @@ TEST_F(Faulty, WorkerThatEndedIsStartedAgain) {
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(first), &info, WEXITED | WNOWAIT), 0);
   EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u);
   EXPECT_NE(this->Worker_.Process(), first);
+}
+
+// The processes of this parent that have not ended, as /proc has them.
+std::vector<int> ChildrenOf(int parent) {
+  std::vector<int> found;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+    std::ifstream file(entry.path() / "stat");
+    std::string text;
+    std::getline(file, text);
+    std::istringstream rest(text.substr(std::min(text.size(), text.rfind(')') + 1)));
+    char state = 'Z';
+    int of = 0;
+    if (rest >> state >> of && of == parent && state != 'Z' && state != 'X') {
+      found.push_back(std::atoi(entry.path().filename().c_str()));
+    }
+  }
+  return found;
+}
+
+TEST_F(Faulty, ChildThatEndedBeforeItsDocumentIsForkedAgain) {
+  const std::string good = this->File("good.stl");
+  EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u);
+  const int worker = this->Worker_.Process();
+  std::vector<int> ahead;
+  while (ahead.empty()) { // until the time limit of the test
+    ahead = ChildrenOf(worker);
+  }
+  for (const int process : ahead) {
+    kill(process, SIGKILL);
+  }
+  while (ChildrenOf(worker) == ahead) {
+  }
+  EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u);
+  EXPECT_EQ(this->Worker_.Process(), worker);
 }
 
 TEST(ImportWorker, SaysWhichProgramIsMissing) {

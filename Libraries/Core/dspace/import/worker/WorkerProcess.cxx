@@ -23,6 +23,7 @@
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/signalfd.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -178,6 +179,7 @@ public:
   }
 
   int Run() {
+    this->ForkSpare();
     for (;;) {
       std::vector<pollfd> watched = {{Control, POLLIN, 0}, {this->Ended_.Get(), POLLIN, 0}};
       for (const auto& [process, child] : this->Children_) {
@@ -201,6 +203,11 @@ private:
     Clock::time_point deadline;
     bool late = false;
   };
+  // A child without a document. It ends at the end of its socket.
+  struct Spare {
+    pid_t process = -1;
+    Descriptor socket = Descriptor();
+  };
 
   bool TakeRequest() {
     WorkerMessage message;
@@ -213,35 +220,65 @@ private:
       } catch (const Error&) {
         // The child that needs it says why it cannot be loaded.
       }
-      return true;
+      this->Spare_ = {}; // it is without that library
+    } else if (message.kind == WorkerMessage::Kind::Document) {
+      this->Give(std::move(message));
     }
-    if (message.kind == WorkerMessage::Kind::Document) {
-      this->Fork(RequestOf(message.payload), std::move(message.descriptor));
-    }
+    this->ForkSpare();
     return true;
   }
 
-  void Fork(const WorkerRequest& request, Descriptor socket) {
+  // Forks the child of the next document, which then does not wait for that. Where it cannot be
+  // forked there is none.
+  void ForkSpare() {
+    int both[2] = {-1, -1};
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, both) != 0) {
+      return;
+    }
+    Descriptor mine(both[0]);
+    Descriptor childs(both[1]);
     const pid_t process = ::fork();
     if (process == 0) {
       ::close(Control);
       this->Ended_.Close();
       this->Children_.clear(); // the sockets of other documents
+      mine.Close();
       sigset_t none;
       sigemptyset(&none);
       sigprocmask(SIG_SETMASK, &none, nullptr);
-      Session = socket.Get();
-      RunChild(request, this->Readers_, this->Rules_);
+      WorkerMessage message;
+      if (!ReceiveWorkerMessage(childs.Get(), message)) {
+        _exit(EXIT_SUCCESS); // no document comes any more
+      }
+      childs.Close();
+      Session = message.descriptor.Release();
+      RunChild(RequestOf(message.payload), this->Readers_, this->Rules_);
     }
-    if (process < 0) {
-      SendWorkerMessage(socket.Get(), WorkerMessage::Kind::Failed,
-                        ErrorText(Error(Error::Kind::Resource, FileObject(request.path),
-                                        "no process can be made to read it: " +
-                                            std::generic_category().message(errno))));
-      return;
+    if (process > 0) {
+      this->Spare_ = {process, std::move(mine)};
     }
-    const auto wait = std::chrono::seconds(std::min<std::uint64_t>(request.seconds, 1000000));
-    this->Children_.emplace(process, Child{std::move(socket), Clock::now() + wait});
+  }
+
+  void Give(WorkerMessage message) {
+    const WorkerRequest request = RequestOf(message.payload);
+    // Twice: the spare child may have ended.
+    for (int i = 0; i < 2; ++i) {
+      if (this->Spare_.process <= 0) {
+        this->ForkSpare();
+      }
+      const Spare child = std::exchange(this->Spare_, {});
+      if (child.process > 0 && SendWorkerMessage(child.socket.Get(), message.kind, message.payload,
+                                                 message.descriptor.Get())) {
+        const auto wait = std::chrono::seconds(std::min<std::uint64_t>(request.seconds, 1000000));
+        this->Children_.emplace(child.process,
+                                Child{std::move(message.descriptor), Clock::now() + wait});
+        return;
+      }
+    }
+    SendWorkerMessage(message.descriptor.Get(), WorkerMessage::Kind::Failed,
+                      ErrorText(Error(Error::Kind::Resource, FileObject(request.path),
+                                      "no process can be made to read it: " +
+                                          std::generic_category().message(errno))));
   }
 
   int NextDeadline_ms() const {
@@ -305,6 +342,7 @@ private:
   confine::ReaderRules Rules_;
   Descriptor Ended_;
   std::map<pid_t, Child> Children_;
+  Spare Spare_;
 };
 
 } // namespace
