@@ -11,7 +11,7 @@ from pictures import application, cookbook, lenses, light, measure, models, rang
 from pictures.paths import DATA, IMAGES  # noqa: E402
 
 EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
-              vtk.own_object, lenses.lenses, light.photometry, sky.stars, measure.measure_sites, measure.measure_ensemble, application.application,
+              vtk.own_object, lenses.lenses, lenses.live_lens, lenses.shutters, light.photometry, sky.stars, measure.measure_sites, measure.measure_ensemble, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages)
 OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,

@@ -1,4 +1,4 @@
-"""A target board through lenses."""
+"""A target board through lenses, a viewport with a lens, exposures, and the closed loop."""
 import numpy as np
 
 import dspace
@@ -30,6 +30,58 @@ def lenses():
         pictures = [crossed(camera.capture(model, exposure=1.0)["color"][..., :3], model.project(corners)) for model in models]
     rows = [np.hstack((left, np.full((SIZE[1], 6, 3), 255, np.uint8), right)) for left, right in (pictures[:2], pictures[2:])]
     atomic_write(IMAGES / "lenses.png", png(np.vstack((rows[0], np.full((6, rows[0].shape[1], 3), 255, np.uint8), rows[1]))))
+
+
+def site(session):
+    """The shipped rover among the field's rocks, and the ground."""
+    scene = session.scene()
+    ground = scene.add_terrain(ROOT / "Data/field/field.tif", image=ROOT / "Data/field/field_color.tif")
+    ground.focus([(0, 0)])
+    rover = scene.load(ROOT / "Data/rover/rover.urdf")
+    rover.place(dspace.rover.load_vehicle(ROOT / "Data/rover/rover.urdf").solve((0, 0, 0), ground))
+    scene.sun.set(azimuth_deg=240, elevation_deg=35)
+    return scene, ground
+
+
+def live_lens():
+    """A camera beside the rover in a viewport: its own projection of 70 degrees, and a fish-eye of 180 degrees."""
+    size = (400, 400)
+    with dspace.Session() as session:
+        scene, ground = site(session)
+        camera = scene.add_camera("eye", eye=(1.5, -1.6, ground.height(1.5, -1.6) + 0.7), target=(0, 0, ground.height(0, 0) + 0.6),
+                                  fov_deg=70)
+        view = scene.add_viewport(size=size, camera=camera, samples=3)
+        view.set(shadows=True)
+        view.set_background("#c9a98a")
+        own = view.image()
+        view.lens = dspace.CameraModel("equidistant", size=size, focal=(126, 126), center=(199.5, 199.5))
+        shown = view.image()
+        v, u = np.mgrid[:size[1], :size[0]]
+        shown[np.hypot(u - 199.5, v - 199.5) > 126 * np.pi / 2] = 0  # beyond 90 degrees from the axis
+    atomic_write(IMAGES / "live_lens.png", png(np.hstack((own, np.full((size[1], 6, 3), 255, np.uint8), shown))))
+
+
+def shutters():
+    """A camera that turns by 40 degrees a second: at rest, exposed for 60 ms, and read out row by row in 0.3 s."""
+    model = dspace.CameraModel("brown", size=(320, 360), focal=(400, 400), center=(159.5, 179.5), radial=(-0.1,))
+    with dspace.Session() as session:
+        scene, ground = site(session)
+        scene.sun.set(azimuth_deg=160, elevation_deg=30)  # behind the camera
+        eye = np.array((3.2, -2.4, ground.height(3.2, -2.4) + 1.0))
+        camera = scene.add_camera("eye")
+
+        def at(time):
+            angle = np.radians(143 + 40 * time)
+            camera.look_at(eye=eye, target=eye + (np.cos(angle), np.sin(angle), 0.0))
+
+        shown = []
+        for shutter in (None, dspace.Shutter(0.06, samples=16), dspace.Shutter(0.002, 0.3, samples=1, bands=100)):
+            at(0.0)
+            shown.append(scene.simulate_image(model, camera, exposure=1.8) if shutter is None else
+                         scene.simulate_exposure(shutter, at, model, camera, exposure=1.8))
+    gap = np.full((360, 6, 3), 255, np.uint8)
+    pictures = [each["color"][..., :3] for each in shown]
+    atomic_write(IMAGES / "shutters.png", png(np.hstack((pictures[0], gap, pictures[1], gap, pictures[2]))))
 
 
 def add_board(scene):

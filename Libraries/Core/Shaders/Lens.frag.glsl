@@ -7,6 +7,8 @@ uniform sampler2D places; // ViewLens::Place, rows from the top
 uniform int number;       // of the source
 layout(location = 0) out vec4 fragColor;
 
+const int MOST_TAPS = 5; // a side of a footprint
+
 vec3 between(vec2 place, ivec2 size)
 {
   place = clamp(place, vec2(0.0), vec2(size) - 1.001);
@@ -30,7 +32,7 @@ void main()
     discard;
   }
   ivec2 size = textureSize(source, 0);
-  int taps = clamp(int(place.w + 0.5), 1, DSPACE_MOST_TAPS);
+  int taps = clamp(int(place.w + 0.5), 1, MOST_TAPS);
   float reach = taps == 1 ? 0.0 : place.w;
   vec3 sum = vec3(0.0);
   for (int y = 0; y < taps; ++y)

@@ -191,7 +191,7 @@ def test_processes_make_the_same(folder, tmp_path, name):
     (JOB, "readout_s = 0.1", "readout_s = -0.1", 11, "readout_s"),
     (JOB, "exposure_s = 0.08", "exposure_s = 0.0", 11, "exposure_s"),
     (JOB, "exposure_s = 0.08", "exposure_s = 0.05", 12, "accepted: the sensor's, 0.08"),
-    (JOB, "times = [0.3, 0.5]", "times = [0.05, 0.5]", 2, "at 0.05 s camera 'eye' is exposed from -0.04 to 0.14 s, and the run is from 0 to 1"),
+    (JOB, "times = [0.3, 0.5]", "times = [0.05, 0.5]", 2, "at 0.05 s camera 'eye' is exposed from -0.04 to 0.14 s, and the run is from 0"),
     (JOB, '"compressed"', '"zip"', 5, "masks is 'zip'; accepted: 'lists', 'compressed'"),
     (JOB, 'model = "eye.json"', 'model = "eye.json"\nline_s = 1.0', 10, "line_s is 1; accepted: seconds from line to line"),
     (SCAN, "line_s = 0.02", "line_s = -0.02", 9, "line_s is -0.02"),

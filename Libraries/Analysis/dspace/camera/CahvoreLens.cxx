@@ -120,9 +120,9 @@ double CahvoreLens::PupilPolynomial(double angle, double* slope) const {
 // along sin t - across cos t - (t - sin t) e(t), and the slope there.
 bool CahvoreLens::AngleOf(double along, double across, double& angle, double& slope) const {
   angle = std::atan2(across, along);
-  const double small = 1e-15 * std::hypot(along, across);
+  const double reach = std::hypot(along, across), small = 1e-15 * reach;
+  double s = across / reach, c = along / reach; // of the angle, without a call
   for (int i = 0; i < 50; ++i) {
-    const double s = std::sin(angle), c = std::cos(angle);
     double dPupil = 0.0;
     const double pupil = this->PupilPolynomial(angle, &dPupil);
     const double error = along * s - across * c - (angle - s) * pupil;
@@ -132,9 +132,13 @@ bool CahvoreLens::AngleOf(double along, double across, double& angle, double& sl
     }
     const double step = error / slope;
     angle -= step;
-    if (std::abs(error) <= small || std::abs(step) <= 1e-16) {
+    // The next step would be the square of this one, times half the curvature over the slope.
+    const double curvature = reach + 10.0 * (std::abs(pupil) + std::abs(dPupil));
+    if (std::abs(error) <= small || step * step * curvature <= 1e-17 * slope) {
       return angle >= 0.0;
     }
+    s = std::sin(angle);
+    c = std::cos(angle);
   }
   return angle >= 0.0 && std::isfinite(angle);
 }

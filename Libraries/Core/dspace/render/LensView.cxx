@@ -16,11 +16,6 @@
 #include <dspace/Error.h>
 
 namespace dspace {
-namespace {
-
-constexpr int MostTaps = 5; // a side of a footprint
-
-} // namespace
 
 LensView::LensView(vtkDspaceRenderContext* context, std::shared_ptr<const ViewLens> lens)
     : Context_(context), Lens_(std::move(lens)), Shaders_(context->GetHub()),
@@ -103,8 +98,7 @@ void LensView::Take(std::size_t source) {
   state->vtkglDisable(GL_BLEND);
   BindTextureUnit(hub, ColorUnit, GL_TEXTURE_2D, this->Source_.Texture());
   BindTextureUnit(hub, OpaqueDepthUnit, GL_TEXTURE_2D, this->Places_->GetHandle());
-  const std::string defines = "#define DSPACE_MOST_TAPS " + std::to_string(MostTaps) + "\n";
-  vtkShaderProgram* program = this->Shaders_.Screen(Lens_frag, defines);
+  vtkShaderProgram* program = this->Shaders_.Screen(Lens_frag);
   program->SetUniformi("source", ColorUnit);
   program->SetUniformi("places", OpaqueDepthUnit);
   program->SetUniformi("number", int(source));

@@ -14,7 +14,7 @@ CHASE = np.array((-5.0, 0.0, 2.0)) / math.hypot(5.0, 2.0)  # direction from what
 EMPTY = 5.0  # [m] from a frame without objects
 LOOK = ("shadows", "shadow_cascades", "shadow_map_size", "shadow_distance", "cascade_colors", "lit_colors", "fill", "exposure",
         "automatic_exposure", "tone")
-COPIED = ("samples", "ornaments", "corner_axes", "navigation", "eye_height", "walk_speed")
+COPIED = ("samples", "ornaments", "corner_axes", "navigation", "eye_height", "walk_speed", "lens")
 SIZE = (640, 400)  # of a viewport until its widget has one
 ABOVE = 10.0  # a map's camera stands so many times its height above the ground
 CLOSE = 1e-6  # of a map's height: smaller differences are rounding

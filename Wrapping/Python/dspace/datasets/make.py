@@ -3,7 +3,6 @@
 Every piece has a record, which is written last and names its files, so an interrupted data set continues without drawing
 a piece twice. All ways of sharing the work give the same bytes."""
 import json
-import os
 import time as clock
 
 from dspace import __version__
@@ -13,7 +12,6 @@ from dspace.batches.folder import Folder
 from dspace.batches.processes import share
 from dspace.datasets.draw import KIND, Stage, batch_of, draw_pieces
 from dspace.datasets.job import Job
-from dspace.errors import Error
 from dspace.movies.draw import open_run
 
 MANIFEST, COCO = "manifest.json", "coco.json"
@@ -94,7 +92,8 @@ def _write_manifest(job, folder):
             records.append(json.load(file))
     content = job.content
     manifest = {"kind": "dspace data set", "dspace": __version__, "planes": content["planes"], "samples": content["samples"],
-                "exposure": content["exposure"], "sensor": content["sensor"], "shutter": content["shutter"], "categories": content["categories"],
+                "exposure": content["exposure"], "sensor": content["sensor"], "shutter": content["shutter"],
+                "categories": content["categories"],
                 "cameras": [{"name": each["name"], "frame": each["frame"], "through": each["through"], "line_s": each["line_s"],
                              "calibration": each["model"]}
                             for each in content["cameras"]],
