@@ -10,7 +10,8 @@ ROOT = HERE.parents[1]
 FOLDERS = ("Data", "Documentation", "Examples", "Testing", "Wrapping")
 # Python modules of others, and what find_package() and the like look for: the Debian packages that bring them.
 MODULES = {"distributed": "python3-distributed", "google": "python3-protobuf", "grpc": "python3-grpcio",
-           "cv2": "python3-opencv", "jinja2": "python3-jinja2", "jplephem": "python3-jplephem", "matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "OpenImageIO": "python3-openimageio", "osgeo": "python3-gdal", "pytest": "python3-pytest",
+           "cv2": "python3-opencv", "jinja2": "python3-jinja2", "jplephem": "python3-jplephem", "matplotlib": "python3-matplotlib",
+           "mrcal": "python3-mrcal", "numpy": "python3-numpy", "OpenImageIO": "python3-openimageio", "osgeo": "python3-gdal", "pytest": "python3-pytest",
            "vtkmodules": "python3-vtk9"}
 FOUND = {"assimp": "libassimp-dev", "Coin": "libcoin-dev", "console_bridge": "libconsole-bridge-dev",
          "Eigen3": "libeigen3-dev", "Freetype": "libfreetype-dev", "GDAL": "libgdal-dev", "gRPC": "libgrpc++-dev",
@@ -57,7 +58,7 @@ def test_imported_modules():
             for name in set(imports(path)) - own - set(sys.stdlib_module_names):
                 assert name in MODULES, f"{path.relative_to(ROOT)} imports {name}: which package brings it?"
                 needed[name].add(path)
-    everything = listed("run", "extra", "test")
+    everything = listed("run", "extra", "test", "bench")
     assert {MODULES[name] for name, paths in needed.items() if paths} <= everything
     # The demo installs only what it runs: nothing that it imports at its start is among the extra packages.
     demo = {name for path in scripts("Examples/rover_drive") for name in imports(path)} & set(MODULES)

@@ -73,6 +73,18 @@ def test_kannala_brandt_is_opencvs_fisheye():
     np.testing.assert_allclose(model.project(wide), theirs, atol=1e-9)
 
 
+@pytest.mark.parametrize("linearity", [0.0, 0.5, 1.0])
+def test_cahvore_is_mrcals(linearity):
+    mrcal = pytest.importorskip("mrcal", reason="python3-mrcal is not installed: only benchmarks need it")
+    R, E = (0.01, -0.03, 0.01), (0.006, 0.002, -0.001)
+    model = dspace.CameraModel("cahvore", size=(1000, 750), C=(0, 0, 0), A=(0, 0, 1), H=(800, 0, 500), V=(0, 790, 375), O=(0, 0, 1), R=R,
+                               E=E, linearity=linearity)
+    seen = points()
+    seen /= np.linalg.norm(seen, axis=1, keepdims=True)  # mrcal takes all points at a distance of 1
+    theirs = mrcal.project(seen, f"LENSMODEL_CAHVORE_linearity={linearity:.2f}", np.array((800, 790, 500, 375, 0, 0, *R, *E), float))
+    np.testing.assert_allclose(model.project(seen), theirs, atol=1e-9)
+
+
 def test_files(tmp_path):
     model = dspace.CameraModel("brown", size=(640, 480), name="left", frame="mast", **BROWN)
     model.save(tmp_path / "a.json")

@@ -154,12 +154,6 @@ def test_compressed_masks():
     assert found[0]["segmentation"] == {"size": [2, 2], "counts": compressed([0, 2, 1, 1])}
 
 
-def test_compressed_masks_are_those_of_pycocotools():
-    mask_of = pytest.importorskip("pycocotools.mask")
-    mask = np.random.default_rng(5).random((50, 60)) < 0.3
-    assert mask_of.encode(np.asfortranarray(mask.astype(np.uint8)))["counts"].decode() == compressed(run_lengths(mask))
-
-
 def test_lines_are_of_their_own_times(folder, tmp_path):
     out = tmp_path / "set"
     assert make(folder / "scan.toml", out) == 2
