@@ -1,11 +1,9 @@
 #include <dspace/import/worker/Bytes.h>
 
 #include <cerrno>
-#include <cstdint>
 #include <system_error>
 #include <utility>
 
-#include <sys/mman.h>
 #include <unistd.h>
 
 #include <dspace/Error.h>
@@ -65,15 +63,6 @@ void ByteWriter::Write(const char* data, std::size_t size) const {
       data += done;
       size -= static_cast<std::size_t>(done);
     }
-  }
-}
-
-void PreferLargePages(void* memory, std::size_t size) {
-  constexpr std::uintptr_t Large = std::uintptr_t(1) << 21;
-  const auto begin = (reinterpret_cast<std::uintptr_t>(memory) + Large - 1) / Large * Large;
-  const auto end = (reinterpret_cast<std::uintptr_t>(memory) + size) / Large * Large;
-  if (begin < end) {
-    ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE);
   }
 }
 

@@ -44,10 +44,6 @@ private:
   std::uint64_t Position_ = 0;
 };
 
-// Before the first use of memory: its pages come by 2 MB where it holds any, which takes a third of
-// the time.
-void PreferLargePages(void* memory, std::size_t size);
-
 // Reads what a ByteWriter wrote, or anything else: nothing beyond the end is touched, and no more
 // is allocated than the bytes that are there justify. Throws Error(Corrupt) that names `object`.
 class ByteReader {
@@ -76,11 +72,7 @@ public:
     const std::size_t count = this->Count(sizeof(T));
     this->Align();
     const auto* begin = reinterpret_cast<const T*>(this->Take(count * sizeof(T)));
-    std::vector<T> values;
-    values.reserve(count);
-    PreferLargePages(values.data(), count * sizeof(T));
-    values.assign(begin, begin + count);
-    return values;
+    return std::vector<T>(begin, begin + count);
   }
   // The number of records that follow, of at least `least` bytes each.
   std::size_t Count(std::size_t least);
