@@ -266,6 +266,7 @@ OTHERS = {"Wrapping/Python/dspace/_core/files.py": 3, "Libraries/Core/dspace/Ato
           "TileFile.cxx": 2,  # a partial map that stays for the next run, and gets its name once it is complete
           "Wrapping/Python/dspace/command_line/camera.py": 1,  # numpy's format in memory, which atomic_write() saves
           "Wrapping/Python/dspace/command_line/confinement.py": 1,  # the empty index of a log of SQLite
+          "CallFilter.cxx": 1,  # rejects the flag
           "SettingsFile.cxx": 1,  # renames damaged settings, which AtomicFile then writes again
           "RecordedFiles.cxx": 1}  # unpacks into a folder of its own, which is removed at the end
 
