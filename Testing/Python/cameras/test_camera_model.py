@@ -75,7 +75,7 @@ def test_kannala_brandt_is_opencvs_fisheye():
 
 @pytest.mark.parametrize("linearity", [0.0, 0.5, 1.0])
 def test_cahvore_is_mrcals(linearity):
-    mrcal = pytest.importorskip("mrcal", reason="python3-mrcal is not installed: only benchmarks need it")
+    mrcal = needs_module("mrcal", "python3-mrcal")
     R, E = (0.01, -0.03, 0.01), (0.006, 0.002, -0.001)
     model = dspace.CameraModel("cahvore", size=(1000, 750), C=(0, 0, 0), A=(0, 0, 1), H=(800, 0, 500), V=(0, 790, 375), O=(0, 0, 1), R=R,
                                E=E, linearity=linearity)

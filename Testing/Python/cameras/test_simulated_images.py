@@ -1,4 +1,7 @@
 """Pictures through lenses against projections that the test computes itself."""
+import os
+import pathlib
+
 import numpy as np
 import pytest
 
@@ -238,3 +241,18 @@ def test_parallel_rays_and_absent_sizes_are_rejected(session, camera):
         scene.simulate_image(dspace.CameraModel("pinhole", focal=(1, 1), center=(0, 0)), camera)
     with pytest.raises(dspace.InvalidArgument, match="accepted: 1 to 1000000"):
         scene.simulate_image(camera=camera)
+
+
+def test_a_camera_inside_the_ground_is_rejected(scene):
+    field = pathlib.Path(os.environ.get("DSPACE_SHIPPED_DATA", pathlib.Path(__file__).parents[3] / "Data")) / "field" / "field.tif"
+    scene.add_fragment("ground")
+    ground = scene.add_terrain(field, name="field", mode="clipmap", fragment="ground")
+    model = dspace.CameraModel("pinhole", size=(32, 24), focal=(30, 30), center=(15.5, 11.5))
+    height = float(ground.height(3.0, 4.0))
+    camera = scene.add_camera("camera", eye=(3, 4, height - 2), target=(30, 4, height - 2))
+    with pytest.raises(dspace.InvalidArgument, match=r"is (2|1\.99\d*|2\.00\d*) m below the ground of terrain 'field'"):
+        scene.simulate_image(model, camera)
+    hidden = scene.simulate_image(model, camera, hide=("ground",), label=True)  # nothing is there then
+    assert (hidden["label"] == 0).all()
+    camera.look_at(eye=(3, 4, height), target=(30, 4, height))  # on it
+    scene.simulate_image(model, camera)

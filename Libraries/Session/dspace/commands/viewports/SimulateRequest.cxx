@@ -4,6 +4,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/camera/files/CameraJson.h>
+#include <dspace/commands/viewports/BuriedCamera.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/scene/Light.h>
@@ -89,6 +90,15 @@ void ViewportCommands::Simulate(const Context& context, v1::SimulateImage& comma
   const double exposure = command.has_exposure() ? command.exposure() : 1.0;
   Require(exposure > 0.0 && exposure <= 1e12, label, "the exposure", exposure, "above 0, to 1e12");
   SetTile(command, label, request);
+  constexpr double Rounding = 1e-3; // [m] of a camera on the ground
+  for (const auto& [name, depth] : GroundsOver(*context.scene, request.lens.camera)) {
+    const ObjectId terrain = context.scene->terrains.at(name)->Object();
+    if (depth > Rounding &&
+        request.hiddenFragments.count(context.GetScene().Object(terrain).fragment) == 0) {
+      Reject(label, "the camera is " + NumberText(depth) + " m below the ground of terrain '" +
+                        name + "'; accepted: a camera above ground, or a picture that hides it");
+    }
+  }
   v1::SimulateImage alike = command;
   alike.clear_x();
   alike.clear_y();

@@ -4,6 +4,7 @@
 #include <set>
 
 #include <dspace/Checks.h>
+#include <dspace/commands/viewports/BuriedCamera.h>
 #include <dspace/commands/viewports/ViewportCommands.h>
 #include <dspace/layers/raster/RasterField.h>
 #include <dspace/messages/Convert.h>
@@ -76,30 +77,15 @@ v1::ExplanationReply::Reason FromReason(ObjectVisibility::Reason reason) {
   return To::SEEN;
 }
 
-// How far a point is above the terrain's surface, along the local vertical [m]; NaN where the
-// terrain has no height.
-double HeightAbove(const TerrainObject& terrain, const Eigen::Vector3d& p_S) {
-  const Eigen::Vector3d map = terrain.Surface().SceneToMap(p_S);
-  if (!map.allFinite()) {
-    return std::numeric_limits<double>::quiet_NaN();
-  }
-  const SurfaceSample ground = terrain.Surface().SampleMap(map.head<2>());
-  return ground.valid ? map.z() - ground.height : std::numeric_limits<double>::quiet_NaN();
-}
-
 void RemarkOnCamera(const Scene& scene, const SceneState& state, const CameraPose& camera,
                     v1::ExplanationReply& reply) {
   std::set<ObjectId> ground;
   for (const auto& [name, terrain] : state.terrains) {
-    const GraphicsObject& object = scene.Object(terrain->Object());
-    ground.insert(object.id);
-    const Eigen::Vector3d p_S =
-        scene.Frames().RelativePose(object.frame, camera.frame).Apply(camera.X_FC.position);
-    const double above = HeightAbove(*terrain, p_S);
-    if (above < 0.0) {
-      reply.add_remark("The camera is " + NumberText(-above) + " m below the ground of terrain '" +
-                       name + "'.");
-    }
+    ground.insert(terrain->Object());
+  }
+  for (const auto& [name, depth] : GroundsOver(state, camera)) {
+    reply.add_remark("The camera is " + NumberText(depth) + " m below the ground of terrain '" +
+                     name + "'.");
   }
   for (const auto& [id, object] : scene.Objects()) {
     if (object.levels.empty() || object.billboard || !object.visible ||
