@@ -87,7 +87,10 @@ class SceneImages:
         between two. progress: called with the fraction that is done, 0 to 1.
 
         Light of a lens wider than 100 degrees comes from up to six views, and is interpolated; all other planes take
-        the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out."""
+        the nearest source pixel. A CAHVORE's moving pupil is followed, with what only it would see left out.
+
+        Raises dspace.InvalidArgument for a camera more than a millimetre below the ground of a terrain that is shown and not
+        hidden by `hide`."""
         about = "simulated image"
         wanted = dict(color=color, radiance=radiance, depth=depth, range=range, label=label, lit_fraction=lit_fraction,
                       incidence=incidence, emission=emission, phase=phase, normal=normal)

@@ -1,0 +1,90 @@
+"""Eclipses on meshes and on terrain, pixel by pixel, against published elements and the lens of two circles."""
+import math
+
+import numpy as np
+import pytest
+from besselian_support import EQUATOR, MOON, SUN, left_by_elements
+from command_support import write_moon
+
+import dspace
+
+CASPER_DEG, CASPER_HEIGHT = (-106.325, 42.85), 1560.0
+MOON_RADIUS, SUN_RADIUS, EARTH_FLATTENING = 1737400.0, 6.957e8, 1 / 298.257223563
+
+
+def needs_de405(scene):
+    if "DE405" not in str(scene.ephemeris("moon", "earth", scene.time).sources):
+        pytest.skip("casacore-data-jpl-de405 is not installed: ERFA's Moon is 32 km off")
+
+
+def lens(sun, body, between):
+    """The part of a disc that another leaves, by their angular radii and the angle between their centres."""
+    if between >= sun + body:
+        return 1.0
+    if between <= body - sun:
+        return 0.0
+    a = math.acos((between ** 2 + sun ** 2 - body ** 2) / (2 * between * sun))
+    b = math.acos((between ** 2 + body ** 2 - sun ** 2) / (2 * between * body))
+    hidden = a - 0.5 * math.sin(2 * a) + (body / sun) ** 2 * (b - 0.5 * math.sin(2 * b))
+    return 1.0 - hidden / math.pi
+
+
+def test_a_mesh_has_the_light_that_the_moon_leaves(scene):
+    """2017 August 21 at Casper, by the Besselian elements: through totality and out of it."""
+    start = scene.time = scene.tdb("2017-08-21T18:00:00 TT")
+    needs_de405(scene)
+    fixed = dict(center="earth", center_axes="ITRF93")
+    scene.add_body("earth", atmosphere=False, **fixed)
+    scene.add_body("moon", radii=MOON, correction="LT", **fixed)
+    scene.add_body("sun", radii=SUN, correction="LT", **fixed)
+    longitude, latitude = np.radians(CASPER_DEG)
+    up = np.array([math.cos(latitude) * math.cos(longitude), math.cos(latitude) * math.sin(longitude), math.sin(latitude)])
+    e2 = EARTH_FLATTENING * (2 - EARTH_FLATTENING)
+    n = EQUATOR / math.sqrt(1 - e2 * math.sin(latitude) ** 2)
+    place = up * (n + CASPER_HEIGHT) - np.array([0, 0, e2 * n * math.sin(latitude)])
+    scene.add_sphere(1.0, position=tuple(place + 3 * up))
+    scene.add_camera(eye=tuple(place + 30 * up), target=tuple(place), up=(0, 0, 1), fov_deg=2)
+    view = scene.add_viewport((32, 32), samples=1)
+    view.set(fill=0.0)
+    full = None
+    for hours in (1.5, -1.0, -0.5, -0.25, -0.2, 0.1, 0.5):
+        scene.time = start + 3600 * hours
+        left = left_by_elements(place, hours)
+        lit = view.lit_fraction()
+        np.testing.assert_allclose(lit, left, atol=2e-3)
+        light = view.radiance()[16, 16, 1] / math.cos(math.radians(view.incidence()[16, 16]))
+        full = full or light
+        assert light == pytest.approx(full * left, abs=3e-3 * full)
+    assert full > 100
+
+
+def test_terrain_has_the_light_that_the_earth_leaves(scene, tmp_path):
+    """2022 November 8 at the middle of the Moon's near side: the Earth's shadow comes and goes."""
+    raster = write_moon(tmp_path / "moon.tif", 1000.0 * np.ones((90, 180), np.float32), -180, 90, 2.0)
+    start = scene.time = scene.tdb("2022-11-08T08:00:00 TT")
+    needs_de405(scene)
+    centered = dict(center="moon", center_axes="J2000")
+    with pytest.warns(dspace.DspaceWarning):
+        scene.add_body("moon", terrain=str(raster), **centered)
+    scene.add_body("earth", atmosphere=False, correction="LT", **centered)
+    scene.add_body("sun", correction="LT", **centered)
+    camera = scene.add_camera("c", eye=(2e6, 0, 0), target=(0, 0, 0), up=(0, 0, 1), fov_deg=2)
+    view = scene.add_viewport((32, 32), "c")
+    seen = []
+    for minutes in (1, 40, 60, 75, 120, 180, 240, 280, 350):
+        scene.time = start + 60 * minutes
+        earth, sun = (scene.ephemeris(body, "moon", scene.time, axes="J2000", correction="LT").position.ravel()
+                      for body in ("earth", "sun"))
+        up = earth / np.linalg.norm(earth)
+        camera.look_at(eye=tuple(up * (MOON_RADIUS + 2e4)), target=(0, 0, 0))
+        place = up * (MOON_RADIUS + 1000.0)
+        earth, sun = earth - place, sun - place
+        # The Earth's limb towards the Sun: its radius there, to the square of the flattening.
+        aside = sun - earth * (sun @ earth) / (earth @ earth)
+        radius = EQUATOR * (1 - EARTH_FLATTENING * (aside[2] / np.linalg.norm(aside)) ** 2)
+        between = math.atan2(np.linalg.norm(np.cross(sun, earth)), sun @ earth)
+        left = lens(math.asin(SUN_RADIUS / np.linalg.norm(sun)), math.asin(radius / np.linalg.norm(earth)), between)
+        lit = view.lit_fraction()
+        assert lit[15:17, 15:17].mean() == pytest.approx(left, abs=1e-3)
+        seen.append(left)
+    assert seen[0] == seen[-1] == 1.0 and seen[5] == 0.0 and 0.2 < seen[3] < 0.6
