@@ -88,3 +88,24 @@ def test_terrain_has_the_light_that_the_earth_leaves(scene, tmp_path):
         assert lit[15:17, 15:17].mean() == pytest.approx(left, abs=1e-3)
         seen.append(left)
     assert seen[0] == seen[-1] == 1.0 and seen[5] == 0.0 and 0.2 < seen[3] < 0.6
+
+
+def test_power_falls_while_the_earth_stands_before_the_sun(scene):
+    """2022 November 8, at 5 degrees east and 3 south on the Moon."""
+    start = scene.time = scene.tdb("2022-11-08T08:00:00 TT")
+    needs_de405(scene)
+    panel = dspace.Panel(2.0, 0.3, tracking="full")
+    profile = scene.power_profile(dspace.BodySite("moon", 5.0, -3.0), panel, start, start + 6.5 * 3600, step=600.0)
+    longitude, latitude = math.radians(5.0), math.radians(-3.0)
+    level = math.cos(latitude)
+    place = MOON_RADIUS * np.array([level * math.cos(longitude), level * math.sin(longitude), math.sin(latitude)])
+    lefts = []
+    for time, lit, power in zip(profile.time, profile.lit, profile.power):
+        earth, sun = (scene.ephemeris(body, "moon", time, axes="MOON_ME", correction="LT").position.ravel() - place
+                      for body in ("earth", "sun"))
+        between = math.atan2(np.linalg.norm(np.cross(sun, earth)), sun @ earth)
+        left = lens(math.asin(SUN_RADIUS / np.linalg.norm(sun)), math.asin(EQUATOR / np.linalg.norm(earth)), between)
+        assert lit == pytest.approx(left, abs=2e-3)
+        assert power == pytest.approx(2.0 * 0.3 * 1361.0 * lit * (149597870700.0 / np.linalg.norm(sun)) ** 2, rel=1e-4, abs=1e-9)
+        lefts.append(left)
+    assert max(lefts) == 1.0 and lefts.count(0.0) >= 5 and profile.longest_night == 0.0  # an eclipse is no night

@@ -38,7 +38,7 @@ struct Battery {
 struct PowerSample {
   double time = 0.0; // TDB [s past J2000]
   AzimuthElevation sun;
-  double lit = 0.0;    // part of the Sun's disc above the horizon, 0 to 1
+  double lit = 0.0;    // part of the Sun's disc that is seen, 0 to 1
   double power = 0.0;  // [W] of all panels
   double charge = 0.0; // of the battery, 0 to 1; NaN without one
 };
@@ -57,9 +57,11 @@ struct PowerProfile {
 
 // The Sun over a place with a horizon, from `start` to `end` (the last step may be shorter). The
 // power between two samples is linear. Irradiance: `solarConstant` [W/m^2] at 1 au, over the square
-// of the distance, times the part of the disc above the horizon (of even radiance). `check` is
-// called at each step; what it throws ends the work. Throws Error(InvalidArgument) as FindContacts,
-// and for values out of range.
+// of the distance, times the part of the disc above the horizon (of even radiance), times the part
+// that the Earth leaves over places on the Moon, and the Moon over places on the Earth: eclipses,
+// by discs of their largest radii, without the Earth's air. Nights are those of the horizon alone.
+// `check` is called at each step; what it throws ends the work. Throws Error(InvalidArgument) as
+// FindContacts, and for values out of range.
 PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                           const HorizonLine& horizon, const std::vector<SolarPanel>& panels,
                           const std::optional<Battery>& battery, double solarConstant, double start,

@@ -260,7 +260,7 @@ class PowerProfile:
     """The power of panels over a span.
 
     Arrays (n,), with both ends of the span: time (seconds past J2000 TDB), sun_azimuth_deg (clockwise from the meridian's
-    north), sun_elevation_deg (of the disc's centre), lit (part of the disc above the horizon, 0 to 1), power [W] of all
+    north), sun_elevation_deg (of the disc's centre), lit (part of the disc that is seen, 0 to 1), power [W] of all
     panels, charge of the battery (0 to 1; None without one).
 
     lit_share: mean of `lit` over the span. energy_wh [W h] of all panels. longest_night [s]: longest time without any of the

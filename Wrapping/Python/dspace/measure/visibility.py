@@ -84,8 +84,9 @@ class Visibility:
         default: none. start, end, step: the power is linear between the samples, of which there are at most 2,000,000.
 
         The irradiance is 1361 W/m^2 at 1 au, times the part of the Sun's disc above the horizon. The disc is of even radiance.
-        The temperature of cells, shadows of the lander itself, light from the ground, atmospheres and eclipses do not count.
-        Nights are found as contacts() finds them, to 1 ms."""
+        The temperature of cells, shadows of the lander itself, light from the ground and atmospheres do not count. Over the Moon
+        the Earth eclipses the Sun, and over the Earth the Moon, as discs of their largest radii: beside the Earth's limb the light
+        is then off by up to 1 % of the disc. Nights are found as contacts() finds them, by the horizon alone, to 1 ms."""
         about = "power profile"
         command = self._scene._command()
         message = command.profile_power

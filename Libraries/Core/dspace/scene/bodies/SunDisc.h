@@ -6,10 +6,6 @@
 
 namespace dspace {
 
-// The part of a disc of radius `a` that a disc of radius `b` leaves, at a distance `d` of the
-// centres; all in the same unit. 0 to 1.
-double DiscLeft(double a, double b, double d);
-
 // A body in the way, as seen from a place.
 struct SunBlocker {
   Eigen::Vector3d center; // from the place [m]
