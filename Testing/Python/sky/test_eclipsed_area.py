@@ -79,3 +79,27 @@ def test_a_sun_of_the_command_is_not_eclipsed(eclipse):
     panel = eclipse.add_plane(2.0, 1.0, position=tuple(place + 2.0 * up))
     assert eclipse.lit_area(panel, both_sides=True, obstacles=False).sun_left < 0.2
     assert eclipse.lit_area(panel, sun=dict(direction=(0, 0, 1)), obstacles=False).sun_left == 1.0
+
+
+def test_a_body_that_is_the_sun_lights_by_its_distance(scene):
+    """At 1.5 and 3 au: a quarter of the power; the light's irradiance is that at 1 au."""
+    au = 149597870700.0
+    scene.add_body("sun", radii=SUN)
+    near = scene.add_plane(2.0, 1.0, position=(0, 0, -1.5 * au), name="near")
+    far = scene.add_plane(2.0, 1.0, position=(0, 0, -3.0 * au), name="far")
+    both = scene.lit_area([near, far], efficiency=0.3)
+    assert both.irradiance == pytest.approx(1361.0 / 1.5**2, rel=1e-9)
+    np.testing.assert_allclose(both.power, [0.3 * 2.0 * 1361.0 / distance**2 for distance in (1.5, 3.0)], rtol=1e-5)
+    given = scene.lit_area(near, sun=dict(direction=(0, 0, 1), irradiance=500.0))
+    assert given.irradiance == pytest.approx(500.0) and given.power == pytest.approx(1000.0, rel=1e-5)
+
+
+def test_the_disc_is_that_of_the_body(scene):
+    """A bar 2 cm wide, 10 m above a small panel: before a Sun of 1 degree it hides a strip of the disc, not all of it."""
+    scene.add_body("sun", radii=1e9 * math.sin(math.radians(0.5)), position=(0, 0, 1e9))
+    panel = scene.add_plane(1e-3, 1e-3, name="panel")
+    scene.add_box((0.02, 4.0, 0.001), name="bar", position=(0, 0, 10.0))
+    x = 0.01 / (10.0 * math.tan(math.radians(0.5)))  # half the strip's width over the disc's radius
+    hidden = 2.0 / math.pi * (math.asin(x) + x * math.sqrt(1.0 - x * x))
+    lit = scene.lit_area(panel, samples=10_000)
+    assert lit.lit_area / lit.area == pytest.approx(1.0 - hidden, abs=0.03)

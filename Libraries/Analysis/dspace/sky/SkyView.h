@@ -6,13 +6,12 @@
 
 #include <Eigen/Core>
 
+#include <dspace/AstronomicalUnit.h>
 #include <dspace/ephemeris/Ephemeris.h>
 #include <dspace/orientation/Frames.h>
 #include <dspace/orientation/Site.h>
 
 namespace dspace {
-
-constexpr double AstronomicalUnit = 149597870700.0; // [m] (IAU 2012, resolution B2)
 
 // A place that turns with a body: `axes.position` is from its centre in `frame`.
 struct SkyPlace {

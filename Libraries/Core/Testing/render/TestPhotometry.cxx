@@ -71,6 +71,7 @@ TEST_F(PhotometryTest, EachModelOnASphereIsTheReferencePixelByPixel) {
     const Capture capture = Planes(viewport);
     int compared = 0;
     double worst = 0.0;
+    const double offset = this->VertexOffset();
     for (int y = 0; y < Size; ++y) {
       for (int x = 0; x < Size; ++x) {
         const Eigen::Vector3d d = Direction(x, y);
@@ -94,10 +95,9 @@ TEST_F(PhotometryTest, EachModelOnASphereIsTheReferencePixelByPixel) {
         }
         const double incidence = Degrees(n, toSun);
         const double phase = Degrees(toSun, -d);
-        // A GPU places vertices on a grid of 1/256 of a pixel (GL_SUBPIXEL_BITS is 8 or more); so
-        // far does the normal turn over half a step.
+        // So far does the normal turn.
         const double step =
-            Degrees(d, Direction(x + 1, y)) * p.norm() / std::cos(emission * M_PI / 180.0) / 512.0;
+            Degrees(d, Direction(x + 1, y)) * p.norm() / std::cos(emission * M_PI / 180.0) * offset;
         EXPECT_NEAR(capture.incidence[at], incidence, 0.01 + step);
         EXPECT_NEAR(capture.emission[at], emission, 0.01 + step);
         EXPECT_NEAR(capture.phase[at], phase, 1e-3);

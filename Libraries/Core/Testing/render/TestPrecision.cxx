@@ -143,8 +143,8 @@ TEST_F(PrecisionTest, DepthHoldsFromCentimetresToBeyondTheMoon) {
       return n.dot(near.position) / n.dot(d) * d.x();
     };
     const double depth = depthAt(30, 40);
-    // A GPU places vertices on a grid of 1/256 of a pixel (GL_SUBPIXEL_BITS is 8 or more).
-    const double step = std::hypot(depthAt(31, 40) - depth, depthAt(30, 41) - depth) / 512.0;
+    const double step =
+        std::hypot(depthAt(31, 40) - depth, depthAt(30, 41) - depth) * this->VertexOffset();
     EXPECT_NEAR(capture.depth[40 * 64 + 30], depth, 2e-6 * depth + step)
         << "at " << distance << " m";
   }

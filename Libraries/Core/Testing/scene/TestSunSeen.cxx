@@ -32,7 +32,7 @@ struct SunSeenTest : ::testing::Test {
 
 TEST_F(SunSeenTest, WithoutASunThereIsNone) {
   Add("moon", {4e8, 0, 0}, 1.7e6);
-  EXPECT_FALSE(SunSeenFrom(scene, {0, 0, 0}));
+  EXPECT_FALSE(SunlitBodies(scene).From({0, 0, 0}));
 }
 
 TEST_F(SunSeenTest, ABodyOfHalfTheSunsAngleLeavesThreeQuarters) {
@@ -42,15 +42,17 @@ TEST_F(SunSeenTest, ABodyOfHalfTheSunsAngleLeavesThreeQuarters) {
   const double half = std::asin(0.5 * std::tan(std::asin(7e8 / 1.5e11)));
   const ObjectId moon = Add("moon", here + 4e8 * ahead, 4e8 * std::sin(half));
   Add("dust", here + 3e8 * ahead, 1e6, false, false); // eclipses nothing
-  const auto seen = SunSeenFrom(scene, here);
+  const auto seen = SunlitBodies(scene).From(here);
   ASSERT_TRUE(seen);
   EXPECT_NEAR((seen->towards_R - ahead).norm(), 0.0, 1e-12);
   EXPECT_NEAR(seen->left, 0.75, 1e-4); // sines for tangents
-  EXPECT_EQ(SunSeenFrom(scene, here + Eigen::Vector3d(0, 1e7, -1e7))->left, 1.0); // beside it
+  EXPECT_NEAR(std::sin(seen->radius), 7e8 / 1.5e11, 1e-15);
+  EXPECT_NEAR(seen->square, std::pow(1.495978707 / 1.5, 2), 1e-12);
+  EXPECT_EQ(SunlitBodies(scene).From(here + Eigen::Vector3d(0, 1e7, -1e7))->left, 1.0); // beside it
   scene.SetObjectVisible(moon, false);
-  EXPECT_EQ(SunSeenFrom(scene, here)->left, 1.0);
+  EXPECT_EQ(SunlitBodies(scene).From(here)->left, 1.0);
   scene.SetObjectVisible(sun, false);
-  EXPECT_FALSE(SunSeenFrom(scene, here));
+  EXPECT_FALSE(SunlitBodies(scene).From(here));
 }
 
 } // namespace

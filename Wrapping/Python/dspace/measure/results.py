@@ -189,8 +189,10 @@ class LitArea:
 
     object: the GraphicsObject, or a list of them. area [m^2]: of the faces that count. lit_area [m^2]: their sunlit part,
     weighted by the part of the Sun's disc that each place sees. projected_area [m^2]: projected towards the Sun.
-    power [W]: projected area times irradiance times efficiency. irradiance [W/m^2]: on a surface that faces the Sun.
-    sun (3,): unit vector towards the Sun, in the scene's root.
+    power [W]: projected area times irradiance times efficiency. irradiance [W/m^2]: on a surface that faces the Sun, outside
+    eclipses. sun (3,): unit vector towards the Sun, in the scene's root. Where a body of the scene is the Sun, it stands as each
+    object sees it: its place, its disc, and the light's irradiance times (1 au / its distance)^2; `irradiance` and `sun` are then
+    those of the first object.
 
     image_projected_area [m^2]: by a picture from the Sun (method "image" or "both"), which takes the Sun as a point, and both sides
     of faces; image_pixel_area [m^2]: of its pixels; else None. With "image" projected_area is the same, lit_area is NaN.

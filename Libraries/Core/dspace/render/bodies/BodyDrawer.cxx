@@ -15,6 +15,7 @@
 #include "vtkOpenGLState.h"
 #include "vtkShaderProgram.h"
 
+#include <dspace/AstronomicalUnit.h>
 #include <dspace/render/Capture.h>
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/GpuStore.h>
@@ -26,7 +27,6 @@
 namespace dspace {
 namespace {
 
-constexpr double AstronomicalUnit = 1.495978707e11; // [m]
 constexpr int MaximumRings = 16;
 constexpr int AirSteps = 24; // of each ray
 

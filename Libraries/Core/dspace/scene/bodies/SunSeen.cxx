@@ -1,7 +1,8 @@
 #include <dspace/scene/bodies/SunSeen.h>
 
-#include <vector>
+#include <cmath>
 
+#include <dspace/AstronomicalUnit.h>
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/Stretch.h>
 #include <dspace/scene/bodies/CelestialBody.h>
@@ -9,10 +10,7 @@
 
 namespace dspace {
 
-std::optional<SunSeen> SunSeenFrom(const Scene& scene, const Eigen::Vector3d& p_R) {
-  std::optional<Eigen::Vector3d> sun;
-  double radius = 0.0;
-  std::vector<SunBlocker> blockers;
+SunlitBodies::SunlitBodies(const Scene& scene) {
   for (const auto& [id, object] : scene.Objects()) {
     const auto* body = dynamic_cast<const CelestialBody*>(object.custom.get());
     if (!body || !object.visible) {
@@ -22,20 +20,31 @@ std::optional<SunSeen> SunSeenFrom(const Scene& scene, const Eigen::Vector3d& p_
     Eigen::Affine3d X_RO;
     X_RO.matrix() = scene.Frames().RelativePose(RootFrame, object.frame).Matrix();
     X_RO = X_RO * object.X_FO;
-    const Eigen::Vector3d center = X_RO.translation() - p_R;
     if (shape.sun) {
-      sun = center;
-      radius = shape.radii.maxCoeff() * LargestStretch(X_RO);
+      this->Sun_ = X_RO.translation();
+      this->Radius_ = shape.radii.maxCoeff() * LargestStretch(X_RO);
     } else if (shape.eclipses) {
-      blockers.push_back({center, (X_RO.linear() * shape.radii.asDiagonal()).inverse()});
+      this->Blockers_.push_back(
+          {X_RO.translation(), (X_RO.linear() * shape.radii.asDiagonal()).inverse()});
     }
   }
-  if (!sun || sun->norm() <= radius) {
+}
+
+std::optional<SunSeen> SunlitBodies::From(const Eigen::Vector3d& p_R) const {
+  if (!this->Sun_) {
     return std::nullopt;
   }
-  SunSeen seen{sun->normalized(), 1.0};
-  for (const SunBlocker& blocker : blockers) {
-    seen.left *= SunLeft(blocker, *sun, radius);
+  const Eigen::Vector3d sun = *this->Sun_ - p_R;
+  const double distance = sun.norm();
+  if (distance <= this->Radius_) {
+    return std::nullopt;
+  }
+  SunSeen seen;
+  seen.towards_R = sun / distance;
+  seen.radius = std::asin(this->Radius_ / distance);
+  seen.square = std::pow(AstronomicalUnit / distance, 2);
+  for (const Blocker& blocker : this->Blockers_) {
+    seen.left *= SunLeft({blocker.center_R - p_R, blocker.unit}, sun, this->Radius_);
   }
   return seen;
 }

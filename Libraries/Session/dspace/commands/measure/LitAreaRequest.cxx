@@ -119,12 +119,16 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
   SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
   const double brightest = *std::max_element(light.color.begin(), light.color.end());
   const bool off = !command.has_sun() && !light.enabled;
-  const double irradiance = off ? 0.0 : SolarConstant * light.intensity * brightest;
+  const double ofLight = off ? 0.0 : SolarConstant * light.intensity * brightest;
   const double efficiency = command.has_efficiency() ? command.efficiency() : 1.0;
   constexpr std::size_t Standard = 4096;
   const std::size_t samples = command.samples() == 0 ? Standard : command.samples();
   const std::vector<std::vector<Face>> faces = FacesOf(context, command);
   const MeasuredScene measured(context, command.measuring(), command.without_object(), name);
+  std::optional<SunlitBodies> bodies;
+  if (!command.has_sun()) {
+    bodies.emplace(scene);
+  }
   v1::LitAreaReply reply;
   std::optional<MeasuredPictures> pictures;
   if (methods.image) {
@@ -135,15 +139,18 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     v1::LitAreaReply::Surface* surface = reply.add_surface();
     surface->set_object(command.object(i));
     double left = 1.0; // of the Sun's disc, by eclipses
-    if (!command.has_sun()) {
-      if (const auto body = SunSeenFrom(scene, MiddleOf(faces[i]))) {
-        sun.towards_R = body->towards_R;
+    double irradiance = ofLight;
+    if (bodies) {
+      if (const auto body = bodies->From(MiddleOf(faces[i]))) {
+        sun = {body->towards_R, body->radius};
         left = body->left;
+        irradiance *= body->square;
       }
     }
     surface->set_sun_left(left);
     if (i == 0) {
       Put(sun.towards_R, reply.mutable_sun());
+      reply.set_irradiance(irradiance);
     }
     if (pictures) {
       const auto [seen, pixel] = pictures->Seen(command.object(i), faces[i], sun.towards_R);
@@ -164,7 +171,6 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     surface->set_projected_area(lit.projected * left);
     surface->set_power(lit.projected * left * irradiance * efficiency);
   }
-  reply.set_irradiance(irradiance);
   context.reply.mutable_lit_area()->Swap(&reply);
 }
 
