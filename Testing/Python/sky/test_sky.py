@@ -171,3 +171,21 @@ def test_a_recording_plays_without_its_kernels(tmp_path):
     with dspace.Playback(path) as playback:
         playback.seek(1e8 + 7200.0)
         assert np.array_equal(playback.session.scene().poses(["moon"])[0], expected)
+
+
+def test_a_body_that_is_the_sun_and_a_sun_that_follows_exclude_each_other(scene):
+    """The distance of the Sun would count twice."""
+    scene.add_body("sun", name="star", position=(0, 0, 2e11))
+    before = scene.sun.irradiance
+    with pytest.raises(dspace.InvalidArgument, match="object 'star' is the Sun"):
+        scene.sun.follow(body="mars")
+    assert scene.sun.irradiance == before
+    scene.objects["star"].remove()
+    scene.sun.follow(body="mars")
+    assert scene.sun.irradiance < 0.6 * before
+    with pytest.raises(dspace.InvalidArgument, match="object 'sun': it is the Sun, but .* follows"):
+        scene.add_body("sun")
+    assert "sun" not in scene.objects
+    scene.add_body("moon")  # no Sun
+    scene.sun.stop()
+    scene.add_body("sun")

@@ -10,6 +10,16 @@
 
 namespace dspace {
 
+const GraphicsObject* FindSunBody(const Scene& scene) {
+  for (const auto& [id, object] : scene.Objects()) {
+    const auto* body = dynamic_cast<const CelestialBody*>(object.custom.get());
+    if (body && body->Shape().sun) {
+      return &object;
+    }
+  }
+  return nullptr;
+}
+
 SunlitBodies::SunlitBodies(const Scene& scene) {
   for (const auto& [id, object] : scene.Objects()) {
     const auto* body = dynamic_cast<const CelestialBody*>(object.custom.get());

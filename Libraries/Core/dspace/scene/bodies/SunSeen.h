@@ -10,6 +10,7 @@
 namespace dspace {
 
 class Scene;
+struct GraphicsObject;
 
 struct SunSeen {
   Eigen::Vector3d towards_R; // the Sun's centre, unit, in the root's axes
@@ -17,6 +18,9 @@ struct SunSeen {
   double square = 1.0;       // (1 au / its distance)^2: the factor of an irradiance at 1 au
   double left = 1.0; // of its disc, 0 to 1, by the bodies with BodyShape::eclipses: SunLeft()
 };
+
+// The body that is the Sun (BodyShape::sun), shown or hidden; null: the scene has none.
+const GraphicsObject* FindSunBody(const Scene& scene);
 
 // The visible bodies of a scene as they stand when it is made: any number of places are then
 // asked for in time of the number of bodies, not of objects.

@@ -207,6 +207,11 @@ void CreateBody(const Context& context, v1::CreateBody& command) {
     shape.brightness = BrightnessFor(
         command.has_albedo() ? command.albedo() : known->geometricAlbedo, material, label);
   }
+  if (shape.sun && context.scene->sky.sun) {
+    // Its distance would count twice.
+    Reject(label, "it is the Sun, but the light 'sun' follows the scene's time by set_sun_motion; "
+                  "accepted: stop that, and set the light's irradiance to that at 1 au");
+  }
   const auto body = std::make_shared<CelestialBody>(label, shape);
   AddObject(context, settings, name, {}, false, body);
   PutShape(body->Shape(), command);

@@ -5,6 +5,7 @@
 #include <dspace/commands/sky/SkyTools.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/SunMessages.h>
+#include <dspace/scene/bodies/SunSeen.h>
 #include <dspace/state/SunPlace.h>
 
 namespace dspace::session {
@@ -107,6 +108,12 @@ void SetSunMotion(const Context& context, v1::SetSunMotion& command) {
     return;
   }
   context.Frames().Path(ToFrame(command.frame())); // exists
+  if (const GraphicsObject* body = FindSunBody(context.GetScene())) {
+    // Its distance would count twice.
+    Reject(SunLabel, "it cannot follow the scene's time: object '" + body->name +
+                         "' is the Sun, which gives it direction, disc and irradiance; accepted: a "
+                         "scene without such a body");
+  }
   if (!command.has_sun()) {
     *command.mutable_sun() = sky.SunAt(context.Frames(), command, context.GetScene().Time());
   }
