@@ -56,8 +56,6 @@ def live_lens():
         own = view.image()
         view.lens = dspace.CameraModel("equidistant", size=size, focal=(126, 126), center=(199.5, 199.5))
         shown = view.image()
-        v, u = np.mgrid[:size[1], :size[0]]
-        shown[np.hypot(u - 199.5, v - 199.5) > 126 * np.pi / 2] = 0  # beyond 90 degrees from the axis
     atomic_write(IMAGES / "live_lens.png", png(np.hstack((own, np.full((size[1], 6, 3), 255, np.uint8), shown))))
 
 

@@ -98,8 +98,8 @@ struct RenderingFixture : ::testing::Test {
     viewport->SetSamples(samples);
     return viewport;
   }
-  // By which vertices may stand beside their places [pixels]: GPUs place them on a grid of 1/256 of
-  // a pixel (GL_SUBPIXEL_BITS is 8 or more); llvmpipe's offset is within the tolerances.
+  // The most by which a vertex is displaced [pixels]: a GPU rounds vertices to a grid of 1/256 of a
+  // pixel (GL_SUBPIXEL_BITS is 8 or more). 0 on llvmpipe, where the tests' tolerances cover it.
   double VertexOffset() {
     return context->GetRendererName().find("llvmpipe") == std::string::npos ? 1.0 / 512.0 : 0.0;
   }

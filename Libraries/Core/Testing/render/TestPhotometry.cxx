@@ -95,7 +95,7 @@ TEST_F(PhotometryTest, EachModelOnASphereIsTheReferencePixelByPixel) {
         }
         const double incidence = Degrees(n, toSun);
         const double phase = Degrees(toSun, -d);
-        // So far does the normal turn.
+        // The normal turns by this angle over the offset.
         const double step =
             Degrees(d, Direction(x + 1, y)) * p.norm() / std::cos(emission * M_PI / 180.0) * offset;
         EXPECT_NEAR(capture.incidence[at], incidence, 0.01 + step);

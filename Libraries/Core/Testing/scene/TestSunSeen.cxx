@@ -33,6 +33,7 @@ struct SunSeenTest : ::testing::Test {
 TEST_F(SunSeenTest, WithoutASunThereIsNone) {
   Add("moon", {4e8, 0, 0}, 1.7e6);
   EXPECT_FALSE(SunlitBodies(scene).From({0, 0, 0}));
+  EXPECT_EQ(FindSunBody(scene), nullptr);
 }
 
 TEST_F(SunSeenTest, ABodyOfHalfTheSunsAngleLeavesThreeQuarters) {
@@ -53,6 +54,8 @@ TEST_F(SunSeenTest, ABodyOfHalfTheSunsAngleLeavesThreeQuarters) {
   EXPECT_EQ(SunlitBodies(scene).From(here)->left, 1.0);
   scene.SetObjectVisible(sun, false);
   EXPECT_FALSE(SunlitBodies(scene).From(here));
+  ASSERT_TRUE(FindSunBody(scene)); // hidden
+  EXPECT_EQ(FindSunBody(scene)->name, "sun");
 }
 
 } // namespace

@@ -22,8 +22,8 @@ struct SunSeen {
 // The body that is the Sun (BodyShape::sun), shown or hidden; null: the scene has none.
 const GraphicsObject* FindSunBody(const Scene& scene);
 
-// The visible bodies of a scene as they stand when it is made: any number of places are then
-// asked for in time of the number of bodies, not of objects.
+// The visible bodies of a scene at the time of construction. The constructor visits all objects;
+// From() visits the bodies only.
 class SunlitBodies {
 public:
   explicit SunlitBodies(const Scene& scene);

@@ -116,7 +116,7 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
                      "' has no Sun; accepted: a scene with a Sun, or the argument sun");
   }
   const Light light = command.has_sun() ? ChangedSun(context, *command.mutable_sun()) : *present;
-  SunDisc sun{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
+  const SunDisc disc{TowardsSun(scene, light, RootFrame), light.radius_deg * M_PI / 180.0};
   const double brightest = *std::max_element(light.color.begin(), light.color.end());
   const bool off = !command.has_sun() && !light.enabled;
   const double ofLight = off ? 0.0 : SolarConstant * light.intensity * brightest;
@@ -140,6 +140,7 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     surface->set_object(command.object(i));
     double left = 1.0; // of the Sun's disc, by eclipses
     double irradiance = ofLight;
+    SunDisc sun = disc;
     if (bodies) {
       if (const auto body = bodies->From(MiddleOf(faces[i]))) {
         sun = {body->towards_R, body->radius};
