@@ -15,6 +15,7 @@
 #include <dspace/import/worker/UrdfBytes.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -302,6 +303,18 @@ TEST_F(Faulty, WorkerThatEndedIsStartedAgain) {
   siginfo_t info = {};
   ASSERT_EQ(waitid(P_PID, static_cast<id_t>(first), &info, WEXITED | WNOWAIT), 0);
   EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u);
+  EXPECT_NE(this->Worker_.Process(), first);
+}
+
+TEST_F(Faulty, DocumentThatAnEndedWorkerHadNotReadIsReadAgain) {
+  const std::string good = this->File("good.stl");
+  EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u);
+  const int first = this->Worker_.Process();
+  ASSERT_EQ(kill(first, SIGSTOP), 0);
+  std::thread reader([&] { EXPECT_EQ(this->Worker_.ReadModel(good).TriangleCount(), 1u); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(100)); // it sends the document
+  EXPECT_EQ(kill(first, SIGKILL), 0);
+  reader.join();
   EXPECT_NE(this->Worker_.Process(), first);
 }
 

@@ -6,12 +6,14 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/mman.h>
 #include <sys/socket.h>
@@ -181,6 +183,15 @@ struct ImportWorker::Link {
     return SendWorkerMessage(this->control.Get(), kind, payload, descriptor);
   }
 
+  // Whether the worker has ended. It closes its socket first, but a child may hold that longer.
+  bool Ended() const {
+    pollfd socket = {this->control.Get(), 0, 0};
+    siginfo_t info = {};
+    return ::poll(&socket, 1, 0) > 0 ||
+           ::waitid(P_PID, static_cast<id_t>(this->process), &info, WEXITED | WNOWAIT | WNOHANG) ||
+           info.si_pid == this->process;
+  }
+
   ~Link() {
     this->control.Close(); // it ends, with its children
     if (this->process > 0 && this->owner == ::getpid()) {
@@ -205,8 +216,8 @@ bool TakeNotes(const std::string& payload, const std::string& object) {
   return codec;
 }
 
-// Serves the child until there is a result.
-Descriptor ResultOf(int child, const WorkerRequest& request, bool& codec) {
+// Serves the child until there is a result; nothing: its socket was closed before.
+std::optional<Descriptor> ResultOf(int child, const WorkerRequest& request, bool& codec) {
   const std::string object = FileObject(request.path);
   const auto until = WorkerClock::now() + std::chrono::seconds(request.seconds + Grace_s);
   WorkerMessage message;
@@ -216,9 +227,7 @@ Descriptor ResultOf(int child, const WorkerRequest& request, bool& codec) {
         throw Error(Error::Kind::Resource, object,
                     "it took too long to read; " + BudgetText(Budget::ImportSeconds));
       }
-      throw Error(Error::Kind::Internal, object,
-                  "the process that reads it gave no valid result: it was ended from outside, or "
-                  "sent what is no message");
+      return std::nullopt;
     }
     switch (message.kind) {
     case WorkerMessage::Kind::Open:
@@ -303,18 +312,25 @@ int ImportWorker::Process() const {
 
 Descriptor ImportWorker::Ask(const WorkerRequest& request) {
   ++this->Documents_;
-  // Twice: the worker may have ended since the last document.
+  // Twice: the worker may have ended since the last document, even with this one unread.
   for (int i = 0; i < 2; ++i) {
     const std::shared_ptr<Link> link = this->Started();
     auto [mine, theirs] = WorkerSockets();
     if (link->Send(WorkerMessage::Kind::Document, RequestText(request), theirs.Get())) {
       theirs.Close();
       bool codec = false;
-      Descriptor file = ResultOf(mine.Get(), request, codec);
+      std::optional<Descriptor> file = ResultOf(mine.Get(), request, codec);
       if (codec) {
         link->Send(WorkerMessage::Kind::WarmCodec);
       }
-      return file;
+      if (file) {
+        return std::move(*file);
+      }
+      if (!link->Ended() || i > 0) {
+        throw Error(Error::Kind::Internal, FileObject(request.path),
+                    "the process that reads it gave no valid result: it was ended from outside, or "
+                    "sent what is no message");
+      }
     }
     this->Drop(link);
   }
