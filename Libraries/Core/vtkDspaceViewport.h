@@ -78,7 +78,7 @@ public:
   void SetFixedView(const dspace::CameraPose& camera, const dspace::Projection& projection);
   /// Makes the lens for a size in pixels; may throw Error.
   using LensMaker = std::function<std::shared_ptr<const dspace::ViewLens>(int, int)>;
-  /// Shows the camera's view through a lens, in place of the camera's projection; made anew for
+  /// Shows the camera's view through a lens, in place of the camera's projection; made again for
   /// each size. Empty: none. Pictures then have no captions, no props of GetRenderer(), and a
   /// background of one colour. Throws what the maker throws, and Error(InvalidArgument) where a
   /// source view is larger than OpenGL draws.

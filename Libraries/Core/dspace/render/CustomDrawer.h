@@ -58,7 +58,7 @@ public:
   // Also into the Sun's shadow maps: `drawing.view.clip` is then set, and no label is kept.
   virtual void DrawLabels(const CustomDrawing& drawing) = 0;
   // Adds what DrawLabels() draws into a shadow map from, besides `drawing.view`'s clip, texel and
-  // takes. Returns false if it does not know: such maps are drawn anew for each picture. After
+  // takes. Returns false if it does not know: such maps are drawn again for each picture. After
   // Prepare().
   virtual bool AddTo(DrawKey&, const CustomDrawing&) { return false; }
   // Photometric angles of what is lit, 0 where they are not known, as Photometry.glsl has them

@@ -22,7 +22,11 @@ public:
   }
   template<class Matrix> void AddMatrix(const Matrix& matrix) {
     const auto plain = matrix.eval();
-    this->AddBytes(plain.data(), std::size_t(plain.size()) * sizeof(*plain.data()));
+    for (Eigen::Index column = 0; column < plain.cols(); ++column) { // however it stores them
+      for (Eigen::Index row = 0; row < plain.rows(); ++row) {
+        this->Add(plain(row, column));
+      }
+    }
   }
   void AddBytes(const void* bytes, std::size_t size) {
     this->Bytes_.append(static_cast<const char*>(bytes), size);

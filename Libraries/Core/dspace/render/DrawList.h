@@ -131,8 +131,8 @@ struct DrawView {
   // Clip from view coordinates in place of the projection's, for pictures that a light sees: levels
   // and poses remain those of the camera.
   std::optional<Eigen::Matrix4d> clip;
-  double texel =
-      0.0; // [m] with `clip`: a pixel of that picture, where ground may be as coarse; or 0
+  // [m] with `clip`: a pixel of that picture, where ground may be as coarse; or 0.
+  double texel = 0.0;
   // With `clip`: which parts of ground the picture needs; empty: all.
   std::function<bool(const LightHull&)> takes;
   std::optional<CascadeFit> shadows; // of the Sun's maps, where they are drawn

@@ -25,27 +25,14 @@ constexpr double Shown = 0.6; // what the percentile becomes
 ExposurePass::ExposurePass(vtkDspaceHubWindow* window)
     : Window_(window), Shaders_(window),
       Light_(window, RenderTarget::Format::Light, RenderTarget::DepthFormat::Float),
-      Luminances_(window, RenderTarget::Format::Light, RenderTarget::DepthFormat::None) {}
+      Luminances_(window, RenderTarget::Format::Light, RenderTarget::DepthFormat::None),
+      EmptyVertices_(window) {}
 
-ExposurePass::~ExposurePass() {
-  if (this->EmptyArray_ && this->Window_->GetContext()) {
-    this->Window_->MakeCurrent();
-    glDeleteVertexArrays(1, &this->EmptyArray_);
-  }
-}
+ExposurePass::~ExposurePass() = default;
 
 RenderTarget& ExposurePass::Target(int width, int height) {
   this->Light_.Resize(width, height);
   return this->Light_;
-}
-
-void ExposurePass::DrawTriangleOverScreen() {
-  if (!this->EmptyArray_) {
-    glGenVertexArrays(1, &this->EmptyArray_);
-  }
-  glBindVertexArray(this->EmptyArray_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
 }
 
 // The factor that automatic exposure gives the picture. The values are sorted, so that the order in
@@ -62,7 +49,7 @@ double ExposurePass::Metered() {
   BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, this->Light_.Color());
   const std::string defines = "#define DSPACE_GRID " + std::to_string(GridSide) + "\n";
   this->Shaders_.Screen(Luminance_frag, defines)->SetUniformi("source", ColorUnit);
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
   state->vtkglEnable(GL_DEPTH_TEST);
   state->PopFramebufferBindings();
   const std::vector<float> texels = this->Luminances_.ReadLight();
@@ -101,7 +88,7 @@ void ExposurePass::Resolve(ToneCurve tone, double factor, RenderTarget& target) 
   program->SetUniformi("depths", OpaqueDepthUnit);
   program->SetUniformf("exposure", float(std::min(factor, 1e30)));
   program->SetUniformi("filmic", tone == ToneCurve::Filmic ? 1 : 0);
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
   glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
   state->vtkglDepthFunc(GL_LEQUAL);
   state->vtkglEnable(GL_BLEND);

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include <dspace/render/EmptyVertexArray.h>
 #include <dspace/render/RenderTarget.h>
 #include <dspace/render/SurfaceShaders.h>
 #include <dspace/scene/ViewLook.h>
@@ -28,13 +29,12 @@ public:
 
 private:
   double Metered();
-  void DrawTriangleOverScreen();
 
   vtkDspaceHubWindow* Window_;
   SurfaceShaders Shaders_;
   RenderTarget Light_;
   RenderTarget Luminances_;
-  unsigned int EmptyArray_ = 0;
+  EmptyVertexArray EmptyVertices_;
 };
 
 } // namespace dspace

@@ -19,7 +19,8 @@ namespace dspace {
 
 LensView::LensView(vtkDspaceRenderContext* context, std::shared_ptr<const ViewLens> lens)
     : Context_(context), Lens_(std::move(lens)), Shaders_(context->GetHub()),
-      Picture_(context->GetHub(), RenderTarget::Format::Display, RenderTarget::DepthFormat::None) {
+      Picture_(context->GetHub(), RenderTarget::Format::Display, RenderTarget::DepthFormat::None),
+      EmptyVertices_(context->GetHub()) {
   this->Source_.Connect(context);
 }
 
@@ -28,9 +29,6 @@ LensView::~LensView() {
   if (hub->GetContext()) {
     hub->MakeCurrent();
     this->Places_->ReleaseGraphicsResources(hub);
-    if (this->EmptyArray_) {
-      glDeleteVertexArrays(1, &this->EmptyArray_);
-    }
   }
 }
 
@@ -48,15 +46,6 @@ DrawView LensView::SourceView(const DrawView& camera, std::size_t source, int sa
   view.height = from.height * samples;
   view.samples = samples;
   return view;
-}
-
-void LensView::DrawTriangleOverScreen() {
-  if (!this->EmptyArray_) {
-    glGenVertexArrays(1, &this->EmptyArray_);
-  }
-  glBindVertexArray(this->EmptyArray_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
 }
 
 // A black picture, and the places on the GPU.
@@ -102,7 +91,7 @@ void LensView::Take(std::size_t source) {
   program->SetUniformi("source", ColorUnit);
   program->SetUniformi("places", OpaqueDepthUnit);
   program->SetUniformi("number", int(source));
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
   state->vtkglEnable(GL_DEPTH_TEST);
   state->vtkglEnable(GL_BLEND);
   glDisable(GL_FRAMEBUFFER_SRGB);

@@ -8,6 +8,7 @@
 #include "vtkNew.h"
 
 #include <dspace/render/ColorPicture.h>
+#include <dspace/render/EmptyVertexArray.h>
 #include <dspace/render/RenderTarget.h>
 #include <dspace/render/SurfaceShaders.h>
 #include <dspace/render/ViewLens.h>
@@ -44,7 +45,6 @@ public:
 private:
   void Begin();
   void Take(std::size_t source);
-  void DrawTriangleOverScreen();
 
   vtkDspaceRenderContext* Context_;
   std::shared_ptr<const ViewLens> Lens_;
@@ -53,7 +53,7 @@ private:
   RenderTarget Picture_;
   vtkNew<vtkTextureObject> Places_;
   bool Uploaded_ = false; // Places_ are those of Lens_
-  unsigned int EmptyArray_ = 0;
+  EmptyVertexArray EmptyVertices_;
   bool Complete_ = false;
   double Exposure_ = 1.0;
 };

@@ -65,7 +65,7 @@ bool IsMasked(const DrawBatch& batch) {
 SceneDrawer::SceneDrawer(vtkDspaceHubWindow* window, GpuStore& store, const CustomDrawers& drawers,
                          RenderStatistics& statistics)
     : Window_(window), Store_(store), Drawers_(drawers), Statistics_(statistics), Shaders_(window),
-      Shadows_(window, store) {}
+      Shadows_(window, store), EmptyVertices_(window) {}
 
 SceneDrawer::~SceneDrawer() {
   this->Release();
@@ -79,6 +79,7 @@ void SceneDrawer::Release() {
   this->Coarse_.reset();
   this->Planes_.reset();
   this->LitMask_.reset();
+  this->EmptyVertices_.Release();
   this->Shadows_.Release();
   if (this->Window_->GetContext()) {
     this->Window_->MakeCurrent();
@@ -86,26 +87,14 @@ void SceneDrawer::Release() {
     if (this->InstanceBuffer_) {
       glDeleteBuffers(1, &this->InstanceBuffer_);
     }
-    if (this->EmptyArray_) {
-      glDeleteVertexArrays(1, &this->EmptyArray_);
-    }
     if (this->Query_) {
       glDeleteQueries(1, &this->Query_);
     }
   }
-  this->InstanceBuffer_ = this->EmptyArray_ = this->Query_ = 0;
+  this->InstanceBuffer_ = this->Query_ = 0;
   this->Uploaded_.clear();
   this->InstanceCapacity_ = 0;
   this->Shaders_.Release();
-}
-
-void SceneDrawer::DrawTriangleOverScreen() {
-  if (!this->EmptyArray_) {
-    glGenVertexArrays(1, &this->EmptyArray_);
-  }
-  glBindVertexArray(this->EmptyArray_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
 }
 
 void SceneDrawer::Upload(const DrawList& list) {
@@ -474,7 +463,7 @@ void SceneDrawer::DrawBackground(const Background& background, int height) {
   program->SetUniform3f("bottomColor", background.bottom.data());
   program->SetUniform3f("topColor", background.top.data());
   program->SetUniformf("height", static_cast<float>(height));
-  this->DrawTriangleOverScreen(); // at depth 0: only where nothing was drawn
+  this->EmptyVertices_.DrawScreen(); // at depth 0: only where nothing was drawn
 }
 
 void SceneDrawer::DrawLitMask(const DrawList& list, const DrawView& view,
@@ -505,7 +494,7 @@ void SceneDrawer::DrawLitMask(const DrawList& list, const DrawView& view,
   this->LitMask_->Bind();
   state->vtkglDisable(GL_DEPTH_TEST);
   this->Shaders_.SunMask(list, view, this->Planes_->Color());
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
   state->vtkglEnable(GL_DEPTH_TEST);
   state->PopFramebufferBindings();
   state->vtkglViewport(0, 0, target.Width(), target.Height());
@@ -621,7 +610,7 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     state->vtkglBlendFuncSeparate(GL_ONE_MINUS_DST_ALPHA, GL_ONE, GL_ONE_MINUS_DST_ALPHA, GL_ONE);
     BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, layer.Color());
     this->Shaders_.Screen(Copy_frag)->SetUniformi("source", ColorUnit);
-    this->DrawTriangleOverScreen();
+    this->EmptyVertices_.DrawScreen();
   }
   this->Statistics_.translucentLayers = layers;
   state->vtkglClearDepth(1.0);
@@ -634,7 +623,7 @@ void SceneDrawer::PeelTranslucent(const DrawList& list, const DrawView& view, Re
     state->vtkglBlendFuncSeparate(GL_ONE, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
     BindTextureUnit(this->Window_, ColorUnit, GL_TEXTURE_2D, this->Sum_->Color());
     this->Shaders_.Screen(Copy_frag)->SetUniformi("source", ColorUnit);
-    this->DrawTriangleOverScreen();
+    this->EmptyVertices_.DrawScreen();
     state->vtkglEnable(GL_DEPTH_TEST);
   }
   state->vtkglBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE,
@@ -708,7 +697,7 @@ void SceneDrawer::HideAngles(const std::vector<const DrawCustom*>& customs, cons
   BindTextureUnit(this->Window_, OpaqueDepthUnit, GL_TEXTURE_2D, labels.Depth());
   this->Shaders_.Screen(PropLight_frag, "#define DSPACE_UNKNOWN\n")
       ->SetUniformi("depths", OpaqueDepthUnit);
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
 }
 
 void SceneDrawer::Downsample(const RenderTarget& source, RenderTarget& target, int samples) {
@@ -723,7 +712,7 @@ void SceneDrawer::Downsample(const RenderTarget& source, RenderTarget& target, i
     // A number in the source lets a software renderer unroll the loops.
     const std::string defines = "#define DSPACE_SAMPLES " + std::to_string(samples) + "\n";
     this->Shaders_.Screen(Downsample_frag, defines)->SetUniformi("source", ColorUnit);
-    this->DrawTriangleOverScreen();
+    this->EmptyVertices_.DrawScreen();
     state->vtkglEnable(GL_DEPTH_TEST);
     state->vtkglEnable(GL_BLEND);
   }

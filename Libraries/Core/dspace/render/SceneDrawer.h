@@ -11,6 +11,7 @@
 #include <dspace/render/CustomDrawer.h>
 #include <dspace/render/CustomDrawers.h>
 #include <dspace/render/DrawList.h>
+#include <dspace/render/EmptyVertexArray.h>
 #include <dspace/render/GpuStore.h>
 #include <dspace/render/RenderTarget.h>
 #include <dspace/render/ShadowMaps.h>
@@ -87,7 +88,6 @@ private:
   void Draw(const DrawList& casters, const DrawView& view, int ground) override;
   bool AddTo(DrawKey& key, const DrawList& casters, const DrawView& view, int ground) override;
   void DrawBackground(const Background& background, int height);
-  void DrawTriangleOverScreen();
   void Upload(const DrawList& list);
   vtkShaderProgram* ProgramOf(const DrawBatch& batch, const DrawList& list,
                               SurfaceShaders::Features features);
@@ -119,7 +119,7 @@ private:
   std::vector<DrawInstance> Uploaded_;
   unsigned int InstanceBuffer_ = 0;
   std::size_t InstanceCapacity_ = 0;
-  unsigned int EmptyArray_ = 0;
+  EmptyVertexArray EmptyVertices_;
   unsigned int Query_ = 0;
   std::unique_ptr<RenderTarget> Layers_[2]; // Linear, with depth: the layer now and the one before
   std::unique_ptr<RenderTarget> Coarse_;    // Label, with depth: for SeenDepths()

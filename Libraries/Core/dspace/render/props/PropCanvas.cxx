@@ -158,7 +158,8 @@ private:
 PropCanvas::PropCanvas(vtkDspaceHubWindow* window)
     : Window_(window),
       Target_(window, RenderTarget::Format::Linear, RenderTarget::DepthFormat::Float),
-      Layer_(window, RenderTarget::Format::Linear, RenderTarget::DepthFormat::Window) {
+      Layer_(window, RenderTarget::Format::Linear, RenderTarget::DepthFormat::Window),
+      EmptyVertices_(window) {
   this->Renderers_->AddItem(this->Renderer_);
   this->Renderer_->SetRenderWindow(window);
   this->Renderer_->AutomaticLightCreationOff();
@@ -170,22 +171,7 @@ PropCanvas::PropCanvas(vtkDspaceHubWindow* window)
 }
 
 PropCanvas::~PropCanvas() {
-  if (this->Window_->GetContext()) {
-    this->Window_->MakeCurrent();
-    if (this->EmptyArray_) {
-      glDeleteVertexArrays(1, &this->EmptyArray_);
-    }
-  }
   this->Renderer_->SetRenderWindow(nullptr);
-}
-
-void PropCanvas::DrawTriangleOverScreen() {
-  if (!this->EmptyArray_) {
-    glGenVertexArrays(1, &this->EmptyArray_);
-  }
-  glBindVertexArray(this->EmptyArray_);
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glBindVertexArray(0);
 }
 
 void PropCanvas::SetView(const CustomDrawing& drawing, const Eigen::Matrix4d& clip, double near,
@@ -290,7 +276,7 @@ void PropCanvas::DrawLabel(vtkProp3D* prop, const CustomDrawing& drawing, Object
   vtkShaderProgram* program = drawing.shaders.Screen(LabelDepth_frag);
   program->SetUniformi("depths", OpaqueDepthUnit);
   program->SetUniformi("label", static_cast<int>(label));
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
 }
 
 void PropCanvas::DrawLinear(vtkProp3D* prop, const CustomDrawing& drawing) {
@@ -302,7 +288,7 @@ void PropCanvas::DrawLinear(vtkProp3D* prop, const CustomDrawing& drawing) {
   vtkShaderProgram* program = drawing.shaders.Screen(PropLight_frag);
   program->SetUniformi("source", ColorUnit);
   program->SetUniformi("depths", OpaqueDepthUnit);
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
 }
 
 void PropCanvas::DrawTranslucent(vtkProp3D* prop, const CustomDrawing& drawing,
@@ -343,7 +329,7 @@ void PropCanvas::DrawTranslucent(vtkProp3D* prop, const CustomDrawing& drawing,
     program->SetUniformi("depths", OpaqueDepthUnit);
     program->SetUniform4f("viewFromDepth", viewFromDepth);
     program->SetUniform4f("depthFromView", depthFromView);
-    this->DrawTriangleOverScreen();
+    this->EmptyVertices_.DrawScreen();
     gl->vtkglColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl->vtkglDepthFunc(GL_LEQUAL);
     gl->vtkglEnable(GL_BLEND);
@@ -370,7 +356,7 @@ void PropCanvas::DrawTranslucent(vtkProp3D* prop, const CustomDrawing& drawing,
                                   ? drawing.shaders.Screen(PropLight_frag, "#define DSPACE_OVER\n")
                                   : drawing.shaders.Screen(Copy_frag);
   program->SetUniformi("source", ColorUnit);
-  this->DrawTriangleOverScreen();
+  this->EmptyVertices_.DrawScreen();
   if (encoding) {
     glEnable(GL_FRAMEBUFFER_SRGB);
   }

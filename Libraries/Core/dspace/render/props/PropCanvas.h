@@ -5,6 +5,7 @@
 #include "vtkNew.h"
 
 #include <dspace/render/CustomDrawer.h>
+#include <dspace/render/EmptyVertexArray.h>
 #include <dspace/render/RenderTarget.h>
 
 class vtkOpenGLRenderer;
@@ -39,7 +40,6 @@ private:
   class Drawing;
   void SetView(const CustomDrawing& drawing, const Eigen::Matrix4d& clip, double near, double far);
   void SetLights(const DrawList& list);
-  void DrawTriangleOverScreen();
   void DrawIntoTarget(vtkProp3D* prop, const CustomDrawing& drawing); // of black, cleared
 
   vtkDspaceHubWindow* Window_;
@@ -47,7 +47,7 @@ private:
   vtkNew<vtkRendererCollection> Renderers_;
   RenderTarget Target_; // of opaque props, for labels and linear light
   RenderTarget Layer_;  // of translucent props
-  unsigned int EmptyArray_ = 0;
+  EmptyVertexArray EmptyVertices_;
 };
 
 } // namespace dspace

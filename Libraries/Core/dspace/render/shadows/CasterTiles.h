@@ -67,9 +67,8 @@ private:
     Eigen::AlignedBox3d box;
     std::optional<Eigen::Vector3d> floor; // S = x + y U + z V
     std::optional<Eigen::Vector3d> ceiling;
-    std::array<Eigen::Vector3d, Most>
-        sides; // outside where x U + y V > z for any of the first ones
-    int sideCount = 0;
+    std::array<Eigen::Vector3d, Most> sides; // outside where x U + y V > z for any of these
+    int sideCount = 0;                       // the first of `sides` that count
   };
   Extent ExtentOf(const LightHull& hull) const;
   Extent ExtentOf(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) const;
