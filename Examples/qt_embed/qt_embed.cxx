@@ -7,8 +7,7 @@
 #include <QSplitter>
 #include <QTimer>
 
-#include <dspace/import/files/ModelReader.h>
-#include <dspace/scene/Scene.h>
+#include <dspace/scene/staging/Staging.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <vtkDspaceRenderContext.h>
@@ -19,32 +18,20 @@ int main(int argc, char** argv) {
   dspace::widgets::PrepareApplication(); // before the QApplication
   QApplication application(argc, argv);
   const auto scene = std::make_shared<dspace::Scene>("scene");
-  dspace::GraphicsObject body;
-  body.name = "body";
-  body.frame = scene->Frames().Create(dspace::RootFrame, "body");
-  const auto model = std::make_shared<const dspace::Model>(dspace::ReadModel(argv[1]));
-  body.levels = {dspace::DetailLevel{dspace::PartsOf(model)}};
-  const dspace::FrameId frame = body.frame;
-  scene->AddObject(std::move(body));
-  dspace::Light sun;
-  sun.name = "sun";
-  sun.direction = Eigen::Vector3d(-0.4, 0.5, -0.8).normalized();
-  scene->SetLight(sun);
-  scene->CreateVantage("main");
+  const dspace::FrameId body = dspace::StageModel(*scene, argv[1], "body");
+  dspace::StageSun(*scene, {0.4, -0.5, 0.8});
 
   vtkNew<vtkDspaceRenderContext> context; // one for all viewports
   context->Initialize(dspace::widgets::MakeQtContext());
   QMainWindow window;
   auto* splitter = new QSplitter(&window);
   vtkNew<vtkDspaceViewport> viewports[2];
-  const Eigen::Vector3d eyes[2] = {{3, -3, 2}, {0.1, 0, 5}};
   for (int i = 0; i < 2; ++i) {
-    dspace::Camera camera;
-    camera.name = i == 0 ? "side" : "top";
-    camera.mount.X_FC = dspace::LookAt(camera.name, eyes[i], {0, 0, 0}, {0, 0, 1});
-    scene->SetCamera("main", camera);
-    viewports[i]->Initialize(context, scene, camera.name, "main", 480, 360);
-    viewports[i]->SetCamera(camera.name);
+    const char* const camera = i == 0 ? "side" : "top";
+    const Eigen::Vector3d eye = i == 0 ? Eigen::Vector3d(3, -3, 2) : Eigen::Vector3d(0.1, 0, 5);
+    dspace::StageCamera(*scene, camera, eye, {0, 0, 0});
+    viewports[i]->Initialize(context, scene, camera, "main", 480, 360);
+    viewports[i]->SetCamera(camera);
     splitter->addWidget(new dspace::widgets::ViewportWidget(viewports[i], splitter));
   }
   window.setCentralWidget(splitter);
@@ -56,7 +43,7 @@ int main(int argc, char** argv) {
   QObject::connect(&loop, &QTimer::timeout, [&] {
     dspace::Pose pose;
     pose.rotation = Eigen::AngleAxisd(0.02 * ++steps, Eigen::Vector3d::UnitZ());
-    scene->Frames().SetLocalPose(frame, pose);
+    scene->Frames().SetLocalPose(body, pose);
   });
   loop.start(10);
   if (argc > 2) {
