@@ -94,6 +94,37 @@ TEST_F(Walled, ADiscAtTheHorizonIsLitInPart) {
   }
 }
 
+// Another disc before the Sun, and discs of equal size half a diameter apart: 2 pi / 3 - sqrt(3) /
+// 2 of pi is hidden. It is no night.
+TEST_F(Walled, AnotherDiscLeavesAPartOfTheSun) {
+  const HorizonMap horizons(this->Path("horizon.tif"));
+  const double radius = std::asin(695700e3 / Astronomical);
+  struct Case {
+    double apart, size, left; // in radii of the Sun
+  };
+  int number = 0;
+  for (const Case& c : {Case{0.0, 0.5, 0.75}, Case{0.0, 1.5, 0.0}, Case{2.1, 1.0, 1.0},
+                        Case{1.0, 1.0, 1.0 - 2.0 / 3.0 + std::sqrt(3.0) / (2.0 * M_PI)}}) {
+    IlluminationOptions options;
+    options.sun_S = {Towards(-0.5 * M_PI, 0.7, Astronomical),
+                     Towards(-0.5 * M_PI, 0.7, Astronomical)};
+    options.eclipser_S = {Towards(-0.5 * M_PI, 0.7 + c.apart * radius, 4e8),
+                          Towards(1.0, 0.7, 4e8)};
+    options.eclipserRadius = 4e8 * std::sin(c.size * radius);
+    options.quantities = {Q::LitFraction, Q::LongestNight, Q::PermanentShadow};
+    const std::string path = this->Path("eclipse" + std::to_string(++number) + ".tif");
+    ASSERT_TRUE(WriteIllumination(horizons, options, path));
+    const auto bands = BandsOf(path);
+    EXPECT_NEAR(bands[0][20], 0.5 * (c.left + 1.0), 1e-5) << number;
+    EXPECT_EQ(bands[1][20], 0.0f);
+    EXPECT_EQ(bands[2][20], 0.0f);
+  }
+  IlluminationOptions options;
+  options.sun_S = {Towards(0.0, 0.7, Astronomical)};
+  options.eclipser_S.resize(2);
+  EXPECT_THROW(WriteIllumination(horizons, options, this->Path("no.tif")), Error);
+}
+
 // A high Sun at the wall's sloping outline: the disc is points on the sphere, each behind the wall
 // or over it.
 TEST_F(Walled, AHighDiscIsCutAtTheOutlinesSlopeInTheSky) {

@@ -5,13 +5,7 @@
 #include <cmath>
 #include <limits>
 
-// Compiled for two processors, without fused multiplications: both give the same bits.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) &&                             \
-    !defined(__SANITIZE_ADDRESS__)
-#define DSPACE_FOR_PROCESSORS __attribute__((target_clones("avx2", "default")))
-#else
-#define DSPACE_FOR_PROCESSORS
-#endif
+#include <dspace/horizon/ForProcessors.h>
 
 namespace dspace {
 

@@ -15,7 +15,8 @@ namespace dspace {
 
 struct IlluminationOptions {
   enum class Quantity {
-    LitFraction,     // of the time, 0 to 1: the mean of the visible part of the Sun's disc
+    LitFraction,     // of the time, 0 to 1: the mean of the visible part of the Sun's disc,
+                     // eclipses included
     LongestNight,    // [s] with the disc completely hidden: consecutive steps times the step
     PermanentShadow, // 1: the disc is hidden at every step; 0: else
     EarthFraction    // of the steps at which the Earth's centre is above the horizon, 0 to 1
@@ -24,11 +25,13 @@ struct IlluminationOptions {
 
   // Of the Sun's and the Earth's centres at every step, in the terrain's frame S [m]: the
   // body-fixed frame, or X east, Y north, Z up of a plane. 1 to MostSteps; the Earth's may be
-  // absent.
+  // absent. A body that eclipses the Sun may be given in the same way; eclipses are no nights.
   std::vector<Eigen::Vector3d> sun_S;
   std::vector<Eigen::Vector3d> earth_S;
+  std::vector<Eigen::Vector3d> eclipser_S;
   double step_s = 3600.0;      // > 0
   double sunRadius = 695700e3; // [m], >= 0 (IAU 2015 resolution B3)
+  double eclipserRadius = 0.0; // [m], >= 0
   std::vector<Quantity> quantities = {Quantity::LitFraction};
 };
 
