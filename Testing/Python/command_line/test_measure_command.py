@@ -154,6 +154,19 @@ def test_a_lit_panel_at_a_time(capsys, moon):
     assert code == 1 and "nowhere" in err and out == ""
 
 
+def test_a_lit_panel_in_an_eclipse(capsys, moon):
+    """2022 November 8 at 12 degrees west: the panel has the part of the Sun that the map of illumination and the sky have there
+    (test_eclipsed_ground.py has these against two discs)."""
+    panel = ("lit", "--terrain", moon, "--site", "-12,5", "--height", "5", "--json", "--time")
+    before, partial, total = (json.loads(run(capsys, *panel, f"2022-11-08T{time} TT")[1]) for time in ("08:00", "09:14", "10:00"))
+    assert before["sun_left"] == 1.0 and before["lit_percent"] == 100.0 and 0.02 < partial["sun_left"] < 0.98
+    assert total["sun_left"] == total["lit_area_m2"] == total["power_w"] == 0.0
+    assert partial["lit_percent"] == pytest.approx(100.0 * partial["sun_left"], rel=1e-9)
+    assert partial["power_w"] == pytest.approx(before["power_w"] * partial["sun_left"], rel=0.02)  # the Sun moves by 0.6 degrees
+    code, out, err = run(capsys, *panel[:-2], "--time", "2022-11-08T09:14 TT")
+    assert code == 0 and f"an eclipse leaves {100.0 * partial['sun_left']:.2f} % of the Sun's disc" in out
+
+
 def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
     """Near the south pole of a polar map the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it."""
     path = tmp_path / "pole.tif"

@@ -149,7 +149,7 @@ def rays(kind, width, height, right=0.0, down=0.0):
 
 
 @pytest.mark.parametrize("kind", VIEWS)
-def test_ranges_to_a_plane_follow_their_closed_form(scene, kind):
+def test_ranges_to_a_plane_follow_their_closed_form(scene, session, kind):
     scene.add_box((400, 400, 2.0), position=(0, 0, -1), name="ground")
     scene.add_camera("eye", eye=(0, 0, 7.0), target=(30, 0, -7), **VIEWS[kind])
     viewport = scene.add_viewport((96, 64))
@@ -160,7 +160,8 @@ def test_ranges_to_a_plane_follow_their_closed_form(scene, kind):
         return 7.0 / np.where(down > 0.0, down, np.nan)
     expected = ranges()
     # A GPU places vertices on a grid of 1/256 of a pixel (GL_SUBPIXEL_BITS is 8 or more).
-    step = np.abs(expected - ranges(down=1 / 256)) + np.abs(expected - ranges(right=1 / 256))
+    software = "llvmpipe" in session.statistics["renderer"]
+    step = 0.0 if software else np.abs(expected - ranges(down=1 / 256)) + np.abs(expected - ranges(right=1 / 256))
     found = viewport.range()
     hit = np.isfinite(found)
     assert hit[-1, 0] and hit[-1, -1]  # corners

@@ -106,7 +106,7 @@ def test_two_viewports_of_a_scene_have_their_own(scene, view):
     assert (view.image()[24, 32] > other.image()[24, 32]).all()
 
 
-def test_lit_colors_show_the_lit_fraction(scene):
+def test_lit_colors_show_the_lit_fraction(scene, session):
     scene.add_plane(20, 20)
     scene.add_box((1, 1, 2))
     scene.sun.set(azimuth_deg=60, elevation_deg=35, radius_deg=5)  # a wide penumbra
@@ -122,6 +122,7 @@ def test_lit_colors_show_the_lit_fraction(scene):
     linear = np.stack([np.interp(lit, (0, 0.5, 1), stops[:, k]) for k in range(3)], axis=-1)
     wanted = 255 * np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
     off = (np.abs(view.image()[..., :3].astype(float) - wanted) > 1.5).any(axis=-1)[seen]
-    assert off.sum() <= 3  # of 30,000: on a GPU two programs may round the edge of a blocker apart
+    # Of 30,000: on a GPU two programs may round the edge of a blocker apart.
+    assert off.sum() <= (0 if "llvmpipe" in session.statistics["renderer"] else 3)
     view.lit_colors = False
     assert np.abs(view.image()[..., :3].astype(float) - wanted)[seen].max() > 50

@@ -103,3 +103,12 @@ def test_the_disc_is_that_of_the_body(scene):
     hidden = 2.0 / math.pi * (math.asin(x) + x * math.sqrt(1.0 - x * x))
     lit = scene.lit_area(panel, samples=10_000)
     assert lit.lit_area / lit.area == pytest.approx(1.0 - hidden, abs=0.03)
+
+
+def test_an_object_within_the_sun_has_the_direction_and_disc_of_the_light(scene):
+    scene.sun.set(direction=(0, 0, 1), irradiance=1000.0)
+    scene.add_body("sun", radii=SUN)
+    panel = scene.add_plane(2.0, 1.0, position=(0, 0, 1e6))
+    lit = scene.lit_area(panel, efficiency=0.3, obstacles=False)
+    assert lit.irradiance == pytest.approx(1000.0, rel=1e-9)
+    assert lit.power == pytest.approx(0.3 * 2.0 * 1000.0, rel=1e-5)

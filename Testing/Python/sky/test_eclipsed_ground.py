@@ -109,3 +109,39 @@ def test_power_falls_while_the_earth_stands_before_the_sun(scene):
         assert power == pytest.approx(2.0 * 0.3 * 1361.0 * lit * (149597870700.0 / np.linalg.norm(sun)) ** 2, rel=1e-4, abs=1e-9)
         lefts.append(left)
     assert max(lefts) == 1.0 and lefts.count(0.0) >= 5 and profile.longest_night == 0.0  # an eclipse is no night
+
+
+def test_maps_and_the_sky_have_the_eclipse_of_each_cell(scene, tmp_path):
+    """2022 November 8 over 60 by 40 degrees of the Moon: the limb of the Earth crosses the cells one after the other."""
+    path = write_moon(tmp_path / "moon.tif", np.zeros((16, 24), np.float32), -30, 20, 2.5)
+    start = scene.time = scene.tdb("2022-11-08T08:00:00 TT")
+    needs_de405(scene)
+    terrain = scene.add_terrain(path, name="ground", on_body=True)
+    horizons = scene.horizon_map(terrain, tmp_path / "horizons.tif", azimuths=4)
+    parts = []
+    for minutes in (1, 70, 75, 80, 120):
+        time = start + 60.0 * minutes
+        made, whole = (scene.illumination_map(horizons, tmp_path / f"{minutes}{eclipses}.tif", start=time, end=time + 1.0, step=60.0,
+                                              quantities=("lit_fraction", "longest_night", "permanent_shadow"), eclipses=eclipses)
+                       for eclipses in (True, False))
+        assert (whole.read("lit_fraction") == 1.0).all()
+        assert (made.read("longest_night") == 0.0).all() and (made.read("permanent_shadow") == 0.0).all()
+        earth, sun = (scene.ephemeris(body, "moon", time, axes="MOON_ME", correction="LT").position.ravel() for body in ("earth", "sun"))
+        x0, dx, _, y0, _, dy = made.geotransform
+        lit = made.read("lit_fraction")
+        for row in range(0, made.rows, 3):
+            for column in range(0, made.columns, 3):
+                longitude, latitude = x0 + dx * (column + 0.5), y0 + dy * (row + 0.5)
+                level = math.cos(math.radians(latitude))
+                place = MOON_RADIUS * np.array([level * math.cos(math.radians(longitude)), level * math.sin(math.radians(longitude)),
+                                                math.sin(math.radians(latitude))])
+                to_earth, to_sun = earth - place, sun - place
+                between = math.atan2(np.linalg.norm(np.cross(to_sun, to_earth)), to_sun @ to_earth)
+                left = lens(math.asin(SUN_RADIUS / np.linalg.norm(to_sun)), math.asin(EQUATOR / np.linalg.norm(to_earth)), between)
+                assert lit[row, column] == pytest.approx(left, abs=2e-3)
+                parts.append(left)
+        x, y = x0 + dx * (made.columns // 2 + 0.5), y0 + dy * (made.rows // 2 + 0.5)
+        sky = terrain.sky(x, y, "sun", time=time)["sun"]
+        assert sky.lit_fraction == pytest.approx(float(lit[made.rows // 2, made.columns // 2]), abs=1e-4)
+    parts = np.array(parts)
+    assert parts.min() == 0.0 and parts.max() == 1.0 and ((parts > 0.05) & (parts < 0.95)).sum() > 20

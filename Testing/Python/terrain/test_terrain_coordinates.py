@@ -57,6 +57,35 @@ def test_coordinates_of_a_projected_raster(scene, tmp_path):
         terrain.locate([1, 2, np.nan])
 
 
+def test_inertial_coordinates_follow_the_rotation_of_the_body(scene, tmp_path):
+    """The Earth by its rotation angle (IAU 2000 resolution B1.8; UT1 is TT - 63.829 s at J2000), Venus by its rotation elements
+    (Archinal et al. 2018), which have no periodic terms, an unknown sphere not at all."""
+    path = write(tmp_path / "utm.tif", np.zeros((20, 20)), (500000, 100, 0, 5500000, 0, -100), "EPSG:32633")
+    earth = scene.add_terrain(path, name="earth")
+    for time in (0.0, 21600.0):
+        scene.time = time
+        place = earth.locate([501000, 5499000, 0], map=True)
+        days = (time - 63.829) / 86400.0
+        angle = 360.0 * (0.7790572732640 + 1.00273781191135448 * days)
+        x, y, z = place.inertial
+        assert (np.degrees(np.arctan2(y, x)) - place.longitude - angle + 180.0) % 360.0 - 180.0 == pytest.approx(0.0, abs=0.01)
+        assert z == pytest.approx(place.body_fixed[2], abs=700.0)  # nutation
+        assert np.linalg.norm(place.inertial) == pytest.approx(np.linalg.norm(place.body_fixed), rel=1e-12)
+    venus = scene.add_terrain(write(tmp_path / "venus.tif", np.zeros((20, 20)), (10, 0.1, 0, 5, 0, -0.1),
+                                    "+proj=longlat +R=6051800 +no_defs"), name="venus", on_body=True)
+    scene.time = 10 * 86400.0
+    place = venus.locate([11.0, 4.0, 0], map=True)
+    ra, dec, w = np.radians((272.76, 67.16, 160.20 - 1.4813688 * 10))
+    node = np.array((-np.sin(ra), np.cos(ra), 0.0))
+    pole = np.array((np.cos(dec) * np.cos(ra), np.cos(dec) * np.sin(ra), np.sin(dec)))
+    prime = np.cos(w) * node + np.sin(w) * np.cross(pole, node)
+    axes = np.column_stack((prime, np.cross(pole, prime), pole))
+    np.testing.assert_allclose(place.inertial, axes @ place.body_fixed, atol=0.1)
+    strange = scene.add_terrain(write(tmp_path / "strange.tif", np.zeros((20, 20)), (10, 0.1, 0, 5, 0, -0.1),
+                                      "+proj=longlat +R=123456 +no_defs"), name="strange", on_body=True)
+    assert np.isnan(strange.locate([11.0, 4.0, 0], map=True).inertial).all()
+
+
 def test_a_map_without_longitudes(scene, tmp_path):
     terrain = scene.add_terrain(write_raster(tmp_path / "plain.tif", np.zeros((4, 4))))
     place = terrain.locate((1, 2, 3))

@@ -28,8 +28,9 @@ struct SkyBody {
   Eigen::Vector3d eastNorthUp; // unit, the same
   double range = 0.0;          // [m] to its centre
   double radius_deg = 0.0;     // of its disc, by its largest radius; 0: its radii are not known
-  double litFraction = 1.0;    // of its disc, as of a sphere that the Sun lights; the Sun: 1
-  double lightTime = 0.0;      // [s]
+  double litFraction =
+      1.0; // of its disc, as of a sphere that the Sun lights; the Sun: 1 (SkyEclipse.h)
+  double lightTime = 0.0; // [s]
 };
 
 // Throws what Ephemeris and Frames throw; Error(InvalidArgument) where the target is the place's

@@ -5,34 +5,16 @@
 #include <limits>
 #include <string>
 
-#include <Eigen/Geometry>
-
 #include <dspace/Checks.h>
-#include <dspace/DiscLeft.h>
 #include <dspace/ephemeris/BodyNames.h>
 #include <dspace/ephemeris/Fallbacks.h>
+#include <dspace/sky/SkyEclipse.h>
 #include <dspace/visibility/Contacts.h>
 
 namespace dspace {
 namespace {
 
 constexpr double JoulesPerWattHour = 3600.0;
-
-// The body that eclipses the Sun over places on another one.
-std::optional<int> EclipserOver(int body) {
-  constexpr int Moon = 301;
-  constexpr int Earth = 399;
-  return body == Moon    ? std::optional<int>(Earth)
-         : body == Earth ? std::optional<int>(Moon)
-                         : std::nullopt;
-}
-
-// The part of the Sun's disc that another disc leaves.
-double Left(const SkyBody& sun, const SkyBody& other) {
-  const double apart = std::atan2(sun.eastNorthUp.cross(other.eastNorthUp).norm(),
-                                  sun.eastNorthUp.dot(other.eastNorthUp));
-  return DiscLeft(sun.radius_deg, other.radius_deg, apart * 180.0 / M_PI);
-}
 
 void Check(const std::vector<SolarPanel>& panels, const std::optional<Battery>& battery) {
   for (std::size_t i = 0; i < panels.size(); ++i) {
@@ -132,7 +114,6 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
     FallbackScope::Begin(tdb);
     return Look(ephemeris, frames, place, BodySun, tdb);
   };
-  const std::optional<int> eclipser = EclipserOver(place.body);
   const auto sighted = [&](const SkyBody& sun) {
     return Sighted{
         sun.direction, sun.range,
@@ -143,8 +124,8 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
     out.time = tdb;
     out.sun = sun.direction;
     out.lit = horizon.LitFraction(sun.direction, std::min(sun.radius_deg, HorizonLine::MostRadius));
-    if (eclipser && out.lit > 0.0) {
-      out.lit *= Left(sun, Look(ephemeris, frames, place, *eclipser, tdb));
+    if (out.lit > 0.0) {
+      out.lit *= SunLeftOver(ephemeris, frames, place, sun, tdb);
     }
     const double distance = sun.range / AstronomicalUnit;
     const double irradiance = out.lit * solarConstant / (distance * distance);

@@ -6,13 +6,19 @@
 #include <dspace/proto/terrain.pb.h>
 #include <dspace/state/TerrainObject.h>
 
+namespace dspace {
+class KernelSet;
+} // namespace dspace
+
 namespace dspace::session {
 
 // `points_S` and `map` (x, y, height) are the same points; `X_RootS` is the pose of the terrain's
 // frame in the scene's root. Longitude to body-fixed coordinates are NaN where the terrain's CRS
-// has none.
+// has none; the inertial position is absent where its body is not known, or how it turns.
+// `kernels` and `tdb` are those of the scene.
 void PutCoordinates(const TerrainObject& terrain, const Pose& X_RootS, const Rows3& points_S,
-                    const Rows3& map, v1::CoordinatesReply& reply);
+                    const Rows3& map, const KernelSet& kernels, double tdb,
+                    v1::CoordinatesReply& reply);
 
 } // namespace dspace::session
 

@@ -30,6 +30,8 @@ def add_arguments(parser):
     parser.add_argument("--body", metavar="BODY", help="that the terrain lies on (default: the one that its CRS names)")
     parser.add_argument("--quantity", action="append", choices=tuple(LOOKS),
                         help="may be given several times (default: lit_fraction). longest_night is in seconds")
+    parser.add_argument("--no-eclipses", dest="eclipses", action="store_false",
+                        help="leave out that the Earth eclipses the Sun over the Moon, and the Moon over the Earth")
     parser.add_argument("--ensemble", type=int, metavar="N",
                         help="map the mean and percentiles over N terrains, 2 to 10000, whose heights differ by random errors. Finished "
                         "members are kept in OUT.members until all are done, and the same command continues")
@@ -68,7 +70,7 @@ def run(options):
         path = stack.enter_context(written_to(out))
         made = ground.scene.illumination_map(horizons, path, start=options.start, end=options.end, step=options.step,
                                              quantities=quantities, terrain=ground.terrain, body=options.body,
-                                             replace=options.replace, **common(options))
+                                             eclipses=options.eclipses, replace=options.replace, **common(options))
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "columns": made.columns, "rows": made.rows}
         write_map(out, made, found, f"{options.start} to {options.end}, every {options.step:g} s",
@@ -94,7 +96,7 @@ def run_ensemble(options, out, quantities):
             options.terrain, whole, variogram, members=options.ensemble, seed=options.seed,
             percentiles=tuple(options.percentile or (5.0, 50.0, 95.0)), quantities=quantities, height=options.height,
             azimuths=options.azimuths, extent=extent_of(options), cell_size=options.cell_size, start=options.start, end=options.end,
-            step=options.step, body=options.body, terrain=ground.arguments, replace=options.replace, **common(options))
+            step=options.step, body=options.body, eclipses=options.eclipses, terrain=ground.arguments, replace=options.replace, **common(options))
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "members": options.ensemble, "seed": options.seed, "variogram": repr(variogram),
                  "columns": made.columns, "rows": made.rows}

@@ -66,6 +66,7 @@ def run(options):
         site = ground.site((*place, options.height))
         panel = add_panel(ground.scene, site, size, facing)
         sun = sun_of(ground, site, options)
+        left = sun.pop("left")
         put_sun(ground.scene, site, sun.pop("angles"), **sun)
         lit = ground.scene.lit_area(panel, efficiency=options.efficiency, samples=options.samples)
         azimuth, elevation = ground.scene.sun.angles(site.terrain, (float(site.x), float(site.y)))
@@ -74,8 +75,8 @@ def run(options):
     row = {"lon_deg": place[0], "lat_deg": place[1], "height_m": options.height, "width_m": size[0], "panel_height_m": size[1],
            "facing_azimuth_deg": facing[0], "facing_elevation_deg": facing[1], "sun_azimuth_deg": azimuth,
            "sun_elevation_deg": elevation, "sun_radius_deg": radius, "irradiance_w_m2": lit.irradiance,
-           "efficiency": options.efficiency, "area_m2": lit.area, "lit_area_m2": lit.lit_area,
-           "lit_percent": 100.0 * lit.fraction, "projected_area_m2": lit.projected_area, "power_w": lit.power}
+           "efficiency": options.efficiency, "sun_left": left, "area_m2": lit.area, "lit_area_m2": left * lit.lit_area,
+           "lit_percent": 100.0 * left * lit.fraction, "projected_area_m2": left * lit.projected_area, "power_w": left * lit.power}
     found = {**source, **row}
     if options.time is not None:
         found["time"] = options.time
@@ -100,8 +101,8 @@ def run_objects(options, out):
     with opened(options) as scene:
         lit = scene.lit_area(options.object, efficiency=options.efficiency, samples=options.samples)
         source = {"recording": str(options.recording), "at_s": options.at}
-    rows = [{"object": name, "irradiance_w_m2": float(lit.irradiance), "efficiency": options.efficiency, "area_m2": float(lit.area[k]),
-             "lit_area_m2": float(lit.lit_area[k]), "lit_percent": 100.0 * float(lit.fraction[k]),
+    rows = [{"object": name, "irradiance_w_m2": float(lit.irradiance), "efficiency": options.efficiency, "sun_left": float(lit.sun_left[k]),
+             "area_m2": float(lit.area[k]), "lit_area_m2": float(lit.lit_area[k]), "lit_percent": 100.0 * float(lit.fraction[k]),
              "projected_area_m2": float(lit.projected_area[k]), "power_w": float(lit.power[k])}
             for k, name in enumerate(options.object)]
     found = {**source, "objects": rows}
@@ -112,7 +113,8 @@ def run_objects(options, out):
         return
     for row in rows:
         print(f"{row['object']}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit ({row['lit_percent']:.2f} %), projected area "
-              f"{row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; {row['irradiance_w_m2']:.6g} W/m^2")
+              f"{row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; {row['irradiance_w_m2']:.6g} W/m^2"
+              f"{eclipse_of(row)}")
     if out is not None:
         print(f"{out}: {len(rows)} objects")
 
@@ -163,8 +165,9 @@ def add_panel(scene, site, size, facing):
 
 
 def sun_of(ground, site, options):
-    """The angles at the site, the radius, and the irradiance or the distance of the Sun: arguments of put_sun()."""
-    distance, radius = options.distance_au, options.radius_deg
+    """The angles at the site, the radius, and the irradiance or the distance of the Sun: arguments of put_sun(); and
+    `left`, the part of its disc that an eclipse leaves."""
+    distance, radius, left = options.distance_au, options.radius_deg, 1.0
     if options.time is None:
         angles = angles_of(options.sun, "--sun")
         if radius is None:
@@ -180,13 +183,19 @@ def sun_of(ground, site, options):
         angles = ((sky.azimuth_deg - north) % 360.0, sky.elevation_deg)
         distance = distance or sky.range / AU
         radius = sky.radius_deg if radius is None else radius
+        left = sky.lit_fraction
     if options.irradiance is not None:
-        return {"angles": angles, "radius_deg": radius, "irradiance": options.irradiance}
-    return {"angles": angles, "radius_deg": radius, "distance_au": distance or 1.0}
+        return {"angles": angles, "radius_deg": radius, "irradiance": options.irradiance, "left": left}
+    return {"angles": angles, "radius_deg": radius, "distance_au": distance or 1.0, "left": left}
 
 
 def told(row):
     return (f"{row['lon_deg']:.9g},{row['lat_deg']:.9g}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit "
             f"({row['lit_percent']:.2f} %), projected area {row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; Sun "
             f"azimuth {row['sun_azimuth_deg']:.5f}, elevation {row['sun_elevation_deg']:.5f} deg, "
-            f"{row['irradiance_w_m2']:.6g} W/m^2")
+            f"{row['irradiance_w_m2']:.6g} W/m^2{eclipse_of(row)}")
+
+
+def eclipse_of(row):
+    """The words for an eclipse; empty: there is none."""
+    return f"; an eclipse leaves {100.0 * row['sun_left']:.2f} % of the Sun's disc" if row["sun_left"] < 1.0 else ""

@@ -28,8 +28,8 @@ class Ensembles:
 
     def illumination_ensemble(self, raster, path, variogram, *, members=20, seed=0, percentiles=(5.0, 50.0, 95.0),
                               quantities=("lit_fraction", "longest_night"), height=0.0, azimuths=360, extent=None, cell_size=0.0,
-                              start=None, end=None, step=3600.0, body=None, sun=None, earth=None, terrain=None, keep=False,
-                              replace=False, threads=0, progress=None):
+                              start=None, end=None, step=3600.0, body=None, sun=None, earth=None, eclipses=True, terrain=None,
+                              keep=False, replace=False, threads=0, progress=None):
         """Writes how much an illumination map depends on the errors of the heights to a GeoTIFF: of each quantity the mean and
         percentiles over an ensemble of terrains, as Barker et al. 2021 judge landing sites. Returns a MapFile.
 
@@ -37,8 +37,8 @@ class Ensembles:
         an illumination map of its own. raster: a file of heights that GDAL reads. path: of a new file. variogram: a Variogram.
         members: 2 to 10,000. seed: a whole number, 0 or more; member k of a seed has the same errors in every ensemble.
         percentiles: 0 to 100, of the members' values (linear between them). terrain: a dict of arguments of add_terrain, such as
-        dict(on_body=True). height, azimuths, extent, cell_size: as of horizon_map(); start, end, step, body, sun, earth, quantities:
-        as of illumination_map(). threads and progress: as of both.
+        dict(on_body=True). height, azimuths, extent, cell_size: as of horizon_map(); start, end, step, body, sun, earth, eclipses,
+        quantities: as of illumination_map(). threads and progress: as of both.
 
         The map of each finished member stays in the folder "PATH.members" until the ensemble is complete, with keep=True also
         after that; the same call continues, and its result is the same to the byte. While a member's map is made the scene has its
@@ -68,7 +68,8 @@ class Ensembles:
         if os.path.lexists(path) and not flag(replace, "replace", about):
             raise AlreadyExists(f"file {path!r}: it exists; accepted: a new file, or replace=True", path)
         places = {"height": height, "azimuths": azimuths, "extent": extent, "cell_size": cell_size}
-        times = {"start": start, "end": end, "step": step, "body": body, "sun": _listed(sun), "earth": _listed(earth)}
+        times = {"start": start, "end": end, "step": step, "body": body, "sun": _listed(sun), "earth": _listed(earth),
+                 "eclipses": flag(eclipses, "eclipses", about)}
         work = _Work(self._scene, raster, path, variogram, seed, terrain, places, times, chosen, replace, threads, progress, members)
         made = [work.member(k) for k in range(members)]
         found = _statistics(path, made, chosen, shares, {"DSPACE_MEMBERS": str(members), "DSPACE_SEED": str(seed),

@@ -82,8 +82,8 @@ class Maps:
         return self._make(command, message, about, path, quantities, replace, threads, progress, deadline)
 
     def illumination_map(self, horizons, path, *, start=None, end=None, step=3600.0, quantities=("lit_fraction",),
-                         terrain=None, body=None, sun=None, earth=None, replace=False, threads=0, progress=None,
-                         deadline=None):
+                         terrain=None, body=None, sun=None, earth=None, eclipses=True, replace=False, threads=0,
+                         progress=None, deadline=None):
         """Writes how the cells of a horizon map are lit over a time to a GeoTIFF. Returns a MapFile.
 
         horizons: the MapFile of horizon_map(), or its path. start, end: times, as text (Scene.tdb) or seconds past J2000
@@ -94,7 +94,9 @@ class Maps:
 
         terrain: a Terrain or its name; a map of another ground is then rejected. body: that the map lies on; default: the
         one that its CRS names. sun, earth: arrays (n, 3) of the centres [m] at every step in the terrain's frame, in place
-        of start, end and the ephemeris; earth only with sun.
+        of start, end and the ephemeris; earth only with sun. eclipses: the Earth eclipses the Sun over the Moon, and the
+        Moon over the Earth, as discs of their largest radii, in "lit_fraction": an eclipse is no night, and no shadow.
+        With sun nothing eclipses it.
 
         On a plane the Sun's direction is that at the middle of the map. Where nothing is in sight, and on a plane below
         0, the horizon is level. The other arguments and errors are those of horizon_map()."""
@@ -118,6 +120,7 @@ class Maps:
             message.sun_position.extend(_places(sun, "sun", about))
         if earth is not None:
             message.earth_position.extend(_places(earth, "earth", about))
+        message.eclipses = flag(eclipses, "eclipses", about)
         quantities = _put_quantities(message, quantities, LIT, about)
         return self._make(command, message, about, path, quantities, replace, threads, progress, deadline)
 

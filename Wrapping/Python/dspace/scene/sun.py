@@ -68,8 +68,8 @@ class Sun(Strict):
         (Scene.add_celestial_frame), or `body` (a name or NAIF id) with the reference frame `axes` (default J2000) or
         with a `site` = longitude, latitude [deg], height [m], whose axes are X east, Y north, Z up.
 
-        Rejected in a scene with a body that is the Sun (Scene.add_body): that gives direction, disc and irradiance itself, and
-        the distance would count twice.
+        Rejected in a scene with a body that is the Sun (Scene.add_body): that gives direction, disc and irradiance
+        itself, and the distance would count twice.
 
             scene.sun.follow(body="moon", site=(29.1957, -84.7906))"""
         follow_sun(self._scene, frame, body, axes, site, geodetic)

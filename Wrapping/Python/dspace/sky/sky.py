@@ -11,7 +11,8 @@ from dspace.sky.places import put_place
 
 # One step of Frames.explain: `frame` is given against `relative` by `source`, whose stated accuracy is `accuracy`.
 FrameStep = collections.namedtuple("FrameStep", "frame relative source accuracy")
-# A body in the sky: azimuth clockwise from north, elevation, angular radius of the disc [deg], range [m], lit fraction.
+# A body in the sky: azimuth clockwise from north, elevation, angular radius of the disc [deg], range [m], lit
+# fraction of the disc; the Sun's: what an eclipse by the Earth (over the Moon) or the Moon (over the Earth) leaves of it.
 SkyBody = collections.namedtuple("SkyBody", "name azimuth_deg elevation_deg range radius_deg lit_fraction")
 # A point of a body: longitude (east), planetocentric and geodetic latitude [deg], position [m] in the body-fixed axes;
 # arrays where several times were asked for.

@@ -13,17 +13,18 @@ class Coordinates:
     height: object  # [m] above the CRS's ellipsoid or sphere
     body_fixed: np.ndarray  # from the body's center, Z to its north pole, X to longitude 0 [m]
     map: np.ndarray  # x, y in the terrain's CRS, and height above its vertical datum [m]
-    root: np.ndarray  # in the scene's root [m]; inertial where the root is
+    root: np.ndarray  # in the scene's root [m]
+    inertial: np.ndarray  # body_fixed in the axes of J2000 at the scene's time [m]; NaN: of no known body
 
 
 def coordinates_of(points, shape=()):
     """Converts Coordinates messages."""
     def vectors(name):
-        given = [getattr(point, name) for point in points]
-        return np.array([[v.x, v.y, v.z] for v in given], dtype=float).reshape(shape + (3,))
+        given = [getattr(point, name) if point.HasField(name) else None for point in points]
+        return np.array([[v.x, v.y, v.z] if v else [np.nan] * 3 for v in given], dtype=float).reshape(shape + (3,))
 
     def scalars(name):
         array = np.array([getattr(point, name) for point in points], dtype=float).reshape(shape)
         return float(array) if shape == () else array
     return Coordinates(scalars("longitude_deg"), scalars("latitude_deg"), scalars("height"),
-                       vectors("body_fixed"), vectors("map"), vectors("root"))
+                       vectors("body_fixed"), vectors("map"), vectors("root"), vectors("inertial"))

@@ -7,14 +7,17 @@
 
 #include <dspace/Checks.h>
 #include <dspace/commands/measure/MapJobs.h>
-#include <dspace/commands/sky/SkyTools.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/maps/Illumination.h>
 #include <dspace/maps/Viewshed.h>
+#include <dspace/orientation/BodyConstants.h>
 #include <dspace/orientation/Site.h>
 #include <dspace/proto/maps.pb.h>
 #include <dspace/sky/KernelSet.h>
+#include <dspace/sky/SkyEclipse.h>
+#include <dspace/state/TerrainBody.h>
 
 namespace dspace::session {
 namespace {
@@ -250,9 +253,9 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
     times.push_back(command.start_s() + double(i) * command.step_s());
   }
   const PlaneAxes plane = horizons.Placement().OnBody() ? PlaneAxes() : AxesOfPlane(horizons);
-  const auto find = [&](const char* target, std::vector<Eigen::Vector3d>& places) {
+  const auto find = [&](int target, std::vector<Eigen::Vector3d>& places) {
     Ephemeris::Query query;
-    query.target = ephemeris.Names().IdOf(target);
+    query.target = target;
     query.observer = body;
     query.frame = kernels.GetFrames().Table().BodyFixed(body).name;
     query.correction = Correction::ConvergedStar;
@@ -262,9 +265,15 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
       places.emplace_back(plane.toMap * (result.state.position - plane.middle));
     }
   };
-  find("sun", options.sun_S);
+  const BodyNames& names = ephemeris.Names();
+  find(BodySun, options.sun_S);
   if (earth) {
-    find("earth", options.earth_S);
+    find(names.IdOf("earth"), options.earth_S);
+  }
+  const std::optional<int> eclipser = EclipserOver(body);
+  if (eclipser && (!command.has_eclipses() || command.eclipses())) {
+    find(*eclipser, options.eclipser_S);
+    options.eclipserRadius = BodyRadii(kernels.GetFrames().Pool(), *eclipser).maxCoeff();
   }
 }
 

@@ -1,8 +1,8 @@
 #include <dspace/commands/sky/SkyPlaces.h>
 
 #include <dspace/Checks.h>
-#include <dspace/commands/sky/SkyTools.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/state/TerrainBody.h>
 #include <dspace/state/TerrainObject.h>
 
 namespace dspace::session {

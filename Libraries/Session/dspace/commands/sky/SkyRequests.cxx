@@ -2,8 +2,10 @@
 #include <dspace/Checks.h>
 #include <dspace/commands/sky/SkyPlaces.h>
 #include <dspace/commands/sky/SkyTools.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/messages/Convert.h>
+#include <dspace/sky/SkyEclipse.h>
 #include <dspace/sky/SubPoints.h>
 #include <dspace/state/TerrainObject.h>
 #include <dspace/time/UtcText.h>
@@ -182,15 +184,17 @@ void SkyState(const Context& context, v1::SkyState& command) {
   }
   v1::SkyReply* reply = context.reply.mutable_sky();
   for (const std::string& target : targets) {
-    const SkyBody seen =
-        Look(ephemeris, sky.kernels->GetFrames(), place, ephemeris.Names().IdOf(target), tdb);
+    const int id = ephemeris.Names().IdOf(target);
+    const Frames& frames = sky.kernels->GetFrames();
+    const SkyBody seen = Look(ephemeris, frames, place, id, tdb);
     v1::SkyReply::Body* body = reply->add_body();
     body->set_name(target);
     body->set_azimuth_deg(seen.direction.azimuth_deg);
     body->set_elevation_deg(seen.direction.elevation_deg);
     body->set_range(seen.range);
     body->set_radius_deg(seen.radius_deg);
-    body->set_lit_fraction(seen.litFraction);
+    body->set_lit_fraction(id == BodySun ? SunLeftOver(ephemeris, frames, place, seen, tdb)
+                                         : seen.litFraction);
   }
 }
 

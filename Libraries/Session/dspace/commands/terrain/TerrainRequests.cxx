@@ -194,7 +194,8 @@ void LocateTerrain(const Context& context, v1::LocateTerrain& command) {
   }
   const FrameId frame = context.GetScene().Object(terrain.Object()).frame;
   PutCoordinates(terrain, context.Frames().WorldPose(frame), command.map() ? other : given,
-                 command.map() ? given : other, *context.reply.mutable_coordinates());
+                 command.map() ? given : other, *context.scene->sky.kernels,
+                 context.GetScene().Time(), *context.reply.mutable_coordinates());
 }
 
 void DescribeTerrain(const Context& context, v1::DescribeTerrain& command) {

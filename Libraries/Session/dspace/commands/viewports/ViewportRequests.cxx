@@ -270,7 +270,8 @@ void ViewportCommands::Pick(const Context& context, v1::Pick& command) {
       Put(map.row(0).transpose(), reply->mutable_map());
       if (terrain->Surface().GetCrs().HasGeographic()) {
         v1::CoordinatesReply coordinates;
-        PutCoordinates(*terrain, scene.Frames().WorldPose(pick.frame), point_S, map, coordinates);
+        PutCoordinates(*terrain, scene.Frames().WorldPose(pick.frame), point_S, map,
+                       *state.sky.kernels, scene.Time(), coordinates);
         reply->mutable_coordinates()->Swap(coordinates.mutable_point(0));
       }
       for (const TerrainField& from : terrain->Fields().All()) {

@@ -1,16 +1,17 @@
+#include <dspace/state/TerrainBody.h>
+
 #include <cctype>
 #include <cmath>
 #include <utility>
 
 #include <dspace/Checks.h>
-#include <dspace/commands/sky/SkyTools.h>
 #include <dspace/crs/Crs.h>
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/sky/KernelSet.h>
 
 namespace dspace::session {
 
-int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label) {
+std::optional<int> FindBody(const KernelSet& kernels, const Crs& crs) {
   static const std::pair<const char*, int> Bodies[] = {
       {"moon", 301},   {"mars", 499},   {"mercury", 199},   {"venus", 299},     {"earth", 399},
       {"phobos", 401}, {"deimos", 402}, {"ceres", 2000001}, {"vesta", 2000004}, {"titan", 606},
@@ -34,7 +35,29 @@ int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label) {
       return body;
     }
   }
-  Reject(label, "its CRS tells no body; accepted: the command with a body");
+  return std::nullopt;
+}
+
+int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label) {
+  const std::optional<int> body = FindBody(kernels, crs);
+  if (!body) {
+    Reject(label, "its CRS tells no body; accepted: the command with a body");
+  }
+  return *body;
+}
+
+std::optional<Eigen::Matrix3d> InertialFromFixed(const KernelSet& kernels, const Crs& crs,
+                                                 double tdb) {
+  const std::optional<int> body = FindBody(kernels, crs);
+  if (!body) {
+    return std::nullopt;
+  }
+  try {
+    const Frames& frames = kernels.GetFrames();
+    return frames.Rotation(frames.Table().BodyFixed(*body).name, "J2000", tdb);
+  } catch (const Error&) { // no constants of its rotation
+    return std::nullopt;
+  }
 }
 
 } // namespace dspace::session

@@ -1,0 +1,29 @@
+// The body that a coordinate reference system lies on.
+#ifndef DSPACE_SESSION_TERRAIN_BODY_H
+#define DSPACE_SESSION_TERRAIN_BODY_H
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace dspace {
+class Crs;
+class KernelSet;
+} // namespace dspace
+
+namespace dspace::session {
+
+// Its NAIF id, by its name or by its radius; none: the CRS tells no body.
+std::optional<int> FindBody(const KernelSet& kernels, const Crs& crs);
+// The same. Throws Error(InvalidArgument) that names `label` where it tells none.
+int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label);
+
+// The rotation from the axes of this body (as BodyFixed of FrameTable.h names them) to J2000 at a
+// time [s past J2000 TDB]. None: the CRS tells no body, or how it turns is not known then.
+std::optional<Eigen::Matrix3d> InertialFromFixed(const KernelSet& kernels, const Crs& crs,
+                                                 double tdb);
+
+} // namespace dspace::session
+
+#endif
