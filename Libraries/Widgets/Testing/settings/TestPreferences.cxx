@@ -25,7 +25,7 @@ TEST(Preferences, AreWrittenAndRead) {
   chosen.theme = Theme::Dark;
   chosen.samples = 4;
   chosen.navigation = "walk";
-  chosen.units = {UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian};
+  chosen.units = {UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian, true, true};
   chosen.recentFiles = 0;
   chosen.restoreLayout = false;
   ASSERT_TRUE(chosen.Write(file));
@@ -40,6 +40,7 @@ TEST(Preferences, WhatIsNotAcceptedIsTheDefaults) {
                                                   {"navigation", 3},
                                                   {"length", "parsec"},
                                                   {"angle", QJsonValue::Null},
+                                                  {"inertial", 1},
                                                   {"recentFiles", -1},
                                                   {"restoreLayout", "no"}}));
   EXPECT_EQ(Preferences::Read(file), Preferences());
@@ -51,7 +52,7 @@ TEST(Preferences, UnitsConvert) {
   const UnitChoice plain;
   EXPECT_EQ(plain.LengthFactor(), 1.0);
   EXPECT_EQ(plain.AngleFactor(), 1.0);
-  const UnitChoice other{UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian};
+  const UnitChoice other{UnitChoice::Length::Kilometre, UnitChoice::Angle::Radian, false, false};
   EXPECT_DOUBLE_EQ(other.LengthFactor() * 1500.0, 1.5);
   EXPECT_NEAR(other.AngleFactor() * 180.0, 3.14159265358979, 1e-14);
   EXPECT_EQ(other.LengthUnit(), "km");

@@ -18,6 +18,7 @@
 #include <dspace/render/GpuStore.h>
 #include <dspace/scene/Primitives.h>
 #include <dspace/scene/Scene.h>
+#include <dspace/scene/controls/OrbitController.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
@@ -155,6 +156,36 @@ TEST_P(WidgetTest, DragsAndTheWheelMoveTheCamera) {
   ASSERT_TRUE(QTest::qWaitFor([&] { return viewport->GetSamples() == 2; }, 3000));
   ASSERT_TRUE(Wait(widget));
   EXPECT_EQ(Differing(widget), 0);
+}
+
+// Two fingers on a touchpad: a pinch to twice the distance brings the camera twice as near, and a
+// scroll without angles is a wheel's.
+TEST_P(WidgetTest, ATouchpadMovesTheCamera) {
+  const auto viewport = View("front");
+  ViewportWidget widget(viewport, nullptr, Path());
+  widget.resize(320, 240);
+  widget.show();
+  ASSERT_TRUE(Wait(widget));
+  const dspace::PickResult pick = viewport->Pick(160, 120);
+  ASSERT_NE(pick.object, 0u);
+  const Eigen::Vector3d point = pick.p_root;
+  const auto distance = [&] {
+    return (scene->PlaceCamera("main", "front").X_FC.position - point).norm();
+  };
+  const double before = distance();
+  const QPointF place(160.5, 120.5); // the pixel's centre
+  QNativeGestureEvent pinch(Qt::ZoomNativeGesture, QPointingDevice::primaryPointingDevice(), 2,
+                            place, place, widget.mapToGlobal(place), 1.0, QPointF());
+  QApplication::sendEvent(&widget, &pinch);
+  EXPECT_NEAR(distance(), 0.5 * before, 1e-3 * before);
+  QNativeGestureEvent turn(Qt::RotateNativeGesture, QPointingDevice::primaryPointingDevice(), 2,
+                           place, place, widget.mapToGlobal(place), 1.0, QPointF());
+  QApplication::sendEvent(&widget, &turn);
+  EXPECT_NEAR(distance(), 0.5 * before, 1e-3 * before);
+  QWheelEvent scroll(place, widget.mapToGlobal(place), QPoint(0, -60), QPoint(), Qt::NoButton,
+                     Qt::NoModifier, Qt::ScrollUpdate, false);
+  QApplication::sendEvent(&widget, &scroll);
+  EXPECT_NEAR(distance(), 0.5 * before * dspace::OrbitController::StepFactor, 2e-3 * before);
 }
 
 TEST_P(WidgetTest, AHandlerTakesTheEventsInPixels) {

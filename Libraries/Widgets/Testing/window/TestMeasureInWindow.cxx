@@ -8,6 +8,8 @@
 #include <dspace/widgets/console/ConsoleWidget.h>
 #include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/measure/ProfileChart.h>
+#include <dspace/widgets/scene/SceneTreeModel.h>
+#include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
 using dspace::widgets::MeasureWidget;
@@ -101,6 +103,40 @@ TEST_F(MeasureInWindow, AnAreaAndAnAngleAreMeasured) {
   }
   EXPECT_NEAR(Number("app.measured"), 90.0, 3.0) << errors.toStdString();
   QTest::mouseClick(view, Qt::LeftButton, {}, QPoint(2, 2)); // beside the slab, or a new angle
+}
+
+// The origins of rows of the scene: 3 m to the right and 4 m up from one frame to the other.
+TEST_F(MeasureInWindow, RowsOfTheSceneArePoints) {
+  ASSERT_TRUE(Run("a = scene.add_frame('a', position=(1, 1, 0))\n"
+                  "b = scene.add_frame('b', position=(4, 5, 0))\n"
+                  "crate = scene.add_box((1, 1, 1), name='crate', frame=b, position=(0, -4, 0))\n"))
+      << errors.toStdString();
+  auto* tree = window->findChild<dspace::widgets::SceneTreeWidget*>();
+  ASSERT_TRUE(tree);
+  tree->Refresh();
+  const auto scene = tree->Model()->GetScene();
+  const auto frame = [&](const char* path) {
+    return dspace::widgets::SceneItem{scene->Frames().Find(path), 0};
+  };
+  const auto before = Widget()->Points(); // of an earlier test
+  tree->Select(frame("a"));
+  EXPECT_EQ(Widget()->Points(), before); // no tool is used
+  tree->Select({});
+  Widget()->Use("line");
+  tree->Select(frame("a"));
+  tree->Select(frame("b"));
+  EXPECT_EQ(Widget()->Points().size(), 2u);
+  ASSERT_TRUE(Settled());
+  EXPECT_NEAR(Number("app.measured.length"), 5.0, 1e-12) << errors.toStdString();
+  Widget()->Use("angle"); // the right angle at the crate, at (4, 1)
+  tree->Select(frame("a"));
+  tree->Select({scene->Frames().Find("b"), scene->FindObject("crate")});
+  tree->Select(frame("b"));
+  ASSERT_TRUE(Settled());
+  EXPECT_NEAR(Number("app.measured"), 90.0, 1e-9);
+  Widget()->Use("");
+  tree->Select({});
+  ASSERT_TRUE(Run("crate.remove(); b.remove(); a.remove()"));
 }
 
 TEST_F(MeasureInWindow, OnTerrainTheDockHasAProfile) {

@@ -158,4 +158,18 @@ TEST(PointerReadout, WritesTheUnitsThatThePreferencesChoose) {
   EXPECT_TRUE(text.contains("3.14159265 rad W")) << text.toStdString();
   EXPECT_TRUE(text.contains("height -4.501250 km")) << text.toStdString();
   EXPECT_TRUE(text.contains("slope 1.571 rad")) << text.toStdString();
+  // Coordinates from the body's centre where they are chosen, or all are wanted.
+  pick->mutable_coordinates()->mutable_body_fixed()->set_x(3396190.5);
+  const auto told = [&](bool all) {
+    return PointerReadout::TextOf(reply.SerializeAsString(), {}, all);
+  };
+  EXPECT_FALSE(told(false).contains("body-fixed"));
+  EXPECT_TRUE(told(true).contains("body-fixed x 3396190.500  y 0.000"));
+  EXPECT_FALSE(told(true).contains("J2000")); // of no known body
+  pick->mutable_coordinates()->mutable_inertial()->set_y(-1e6);
+  EXPECT_TRUE(told(true).contains("J2000 x 0.000  y -1000000.000  z 0.000 m"));
+  units.Set({UnitChoice::Length::Metre, UnitChoice::Angle::Degree, true, false});
+  EXPECT_TRUE(told(false).contains("body-fixed x 3396190.500"));
+  EXPECT_FALSE(told(false).contains("J2000"));
+  units.Set({});
 }

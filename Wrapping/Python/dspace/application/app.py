@@ -12,6 +12,7 @@ from dspace.application.files import around
 from dspace.application.key_frames import KeyFrames
 from dspace.application.layouts import Layouts
 from dspace.application.link import Link, ServerApart, required_address
+from dspace.application.overlays import Overlay
 from dspace.application.plots import Plot, Shown
 from dspace.application.plugins import PlugIns
 from dspace.application.run import Run
@@ -26,7 +27,7 @@ SIZE = (640, 400)  # of a viewport until its widget has one
 class App:
     """The program that the prompt belongs to.
 
-    session, scene: where files are opened. views: the viewports of its windows, by name; view: the latest one. runs:
+    session, scene: where files are opened. views: the viewports of its windows, by name. runs:
     the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number. links: the
     servers, as dspace.application.link.Link. measured: what measure() returned last; None before."""
 
@@ -35,7 +36,7 @@ class App:
         self.session = around(host)
         self.scene = self.session.scene()
         self.views = {}
-        self.view = None
+        self._latest = None
         self.runs = []
         self.links = []
         self._servers = []
@@ -53,11 +54,17 @@ class App:
 
     # --- Views ---------------------------------------------------------------------------------
 
+    @property
+    def view(self):
+        """The view that had the focus last; of new ones the latest. None: no view is open."""
+        name = json.loads(self._host.extend(json.dumps({"do": "views", "what": "current"}))).get("view")
+        return self.views.get(name, self._latest)
+
     def show(self, viewport, title=None):
         """Shows a viewport in the window. Returns it."""
         client = viewport._client
         self._host.show(client.shown(), viewport.name, viewport.name if title is None else text(title, "the title"))
-        self.views[viewport.name] = self.view = viewport
+        self.views[viewport.name] = self._latest = viewport
         return viewport
 
     def new_view(self, camera=None, title=None, name=None):
@@ -99,8 +106,8 @@ class App:
             link.close()
         self._host.close(viewport._client.shown(), viewport.name)
         self.views.pop(viewport.name, None)
-        if self.view == viewport:
-            self.view = next(reversed(self.views.values()), None)
+        if self._latest == viewport:
+            self._latest = next(reversed(self.views.values()), None)
         viewport.remove()
         own = self._own_cameras.pop(viewport.name, None)
         if own is not None and own.name in self.scene.cameras:
@@ -213,6 +220,15 @@ class App:
     def on_key(self, key, function):
         """Calls function() when the key is pressed anywhere in the window: "F7", "Ctrl+Shift+D"."""
         self.plugins.on_key(key, function)
+
+    def add_overlay(self, view=None):
+        """Texts, lines and circles over the pictures of a view (default: of all views), as a
+        dspace.application.overlays.Overlay. Captures and movies do not have them."""
+        return Overlay(self.plugins._ask, None if view is None else views.required(view))
+
+    def add_read_out(self, name, text="", tip=""):
+        """A value in the status bar, "name text", as a dspace.application.plugins.ReadOut."""
+        return self.plugins.add_read_out(name, text, tip)
 
     def load_plugin(self, name):
         """Loads a Python file or module and calls its plugin(app). Returns the module."""
@@ -396,8 +412,8 @@ class App:
         for link in [link for link in self.map_links if link.view._client is gone]:
             link.close()
         self.views = {name: view for name, view in self.views.items() if view._client is not gone}
-        if self.view is not None and self.view._client is gone:
-            self.view = next(reversed(self.views.values()), None)
+        if self._latest is not None and self._latest._client is gone:
+            self._latest = next(reversed(self.views.values()), None)
 
     def demo(self):
         """The scene of the first start: a rover drives over the shipped field."""

@@ -1,4 +1,4 @@
-"""What plug-ins add to the window: docks of values and controls, menu entries, keys."""
+"""What plug-ins add to the window: docks of values and controls, menu entries, keys, read-outs in the status bar."""
 import importlib
 import importlib.util
 import json
@@ -94,6 +94,26 @@ class Panel:
         self._ask("close")
 
 
+class ReadOut:
+    """A value in the status bar; App.add_read_out() makes it."""
+
+    def __init__(self, ask, name, words, tip):
+        self.name, self._asked, self._state = text(name, "the name", "read-out"), ask, ""
+        self._text = text(words, "the text", f"read-out {name!r}")
+        self._number = ask({"do": "read_out", "name": name, "text": words, "tip": text(tip, "the tip", f"read-out {name!r}")})["read_out"]
+
+    def set(self, text=None, state=None):
+        """text: the value. state: "", "amber" or "red", which colour it."""
+        words = self._text if text is None else str(text)
+        marked = self._state if state is None else state
+        self._asked({"do": "tell", "read_out": self._number, "text": words, "state": marked})
+        self._text, self._state = words, marked
+
+    def close(self):
+        """Removes it."""
+        self._asked({"do": "untell", "read_out": self._number})
+
+
 class PlugIns:
     """The plug-ins of an App."""
 
@@ -109,6 +129,9 @@ class PlugIns:
         made = Panel(self._ask, text(title, "the title", "dock"), area)
         self._panels[made._number] = made
         return made
+
+    def add_read_out(self, name, words, tip):
+        return ReadOut(self._ask, name, words, tip)
 
     def add_action(self, menu, words, function, key="", tip=""):
         self._put({"do": "action", "menu": text(menu, "the menu", "action"), "text": text(words, "the text", "action"),

@@ -13,7 +13,6 @@ namespace {
 
 constexpr double DegreesPerImageHeight = 180.0; // of an orbit drag
 constexpr double KeyTurn_deg = 5.0;
-constexpr double StepFactor = 1.2;    // of a wheel notch and a key
 constexpr double DragFactor = 1.01;   // of a pixel of dolly drag
 constexpr double ClickRadius = 3.0;   // pixels a hand may shake
 constexpr double DefaultDepth = 10.0; // metres, where nothing else is known

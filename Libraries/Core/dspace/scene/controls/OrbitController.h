@@ -59,6 +59,8 @@ struct OrbitResult {
 // Map: left drag pans, arrow keys move by a twentieth of the picture's height; nothing turns.
 class OrbitController {
 public:
+  static constexpr double StepFactor = 1.2; // nearer by a notch of the wheel or a key
+
   // `up` in F, any length but 0. Throws Error(InvalidArgument).
   explicit OrbitController(const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ());
 

@@ -45,7 +45,7 @@ ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
   this->Output_->setMaximumBlockCount(MostLines);
   this->Output_->setLineWrapMode(QPlainTextEdit::WidgetWidth);
   this->Line_->setFont(font);
-  this->Line_->setPlaceholderText(tr("Python: session, scene, app, dspace"));
+  this->Line_->setPlaceholderText(tr("Python: session, scene, view, app, dspace"));
   this->Line_->setToolTip(tr("Return runs the line, Up and Down recall, Tab completes"));
   this->Line_->installEventFilter(this);
   this->Prompt_->setFont(font);

@@ -84,12 +84,20 @@ import dspace
 import dspace.vtk
 from dspace.application import App
 app = App(_dspace_host)
-session, scene = app.session, app.scene
+session, scene, view = app.session, app.scene, None
+_current = None
 _console = code.InteractiveInterpreter(globals())
 _completer = rlcompleter.Completer(globals())
 
+def _follow():
+    """`view` is the current view, unless the user has given the name to something else."""
+    global view, _current
+    if globals().get("view") is _current:
+        view = _current = app.view
+
 def _run(source, name):
     import linecache
+    _follow()
     linecache.cache[name] = (len(source), None, source.splitlines(True), name)
     try:
         exec(compile(source, name, "exec"), globals())
@@ -445,6 +453,7 @@ PythonInterpreter::~PythonInterpreter() {
 bool PythonInterpreter::Push(const QString& source) {
   const Lock lock(this->Impl_->attendant.get());
   Internals& self = *this->Impl_;
+  self.Call("_follow", Object(PyTuple_New(0)));
   PyObject* console = PyDict_GetItemString(self.names, "_console");
   const Object more(
       PyObject_CallMethod(console, "runsource", "ss", source.toUtf8().constData(), "<console>"));

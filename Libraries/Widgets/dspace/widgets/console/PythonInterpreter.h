@@ -50,8 +50,9 @@ struct PythonHost {
       task;
 };
 
-// CPython with `dspace`, `session` (of the given vtkDspaceSession), `scene` and `app` in its name
-// space. One a process, in one thread; other Python threads run between its calls.
+// CPython with `dspace`, `session` (of the given vtkDspaceSession), `scene`, `view` (the view that
+// had the focus last) and `app` in its name space. One a process, in one thread; other Python
+// threads run between its calls.
 class PythonInterpreter : public QObject {
   Q_OBJECT
 

@@ -13,6 +13,8 @@
 #include <QTextBrowser>
 #include <QVBoxLayout>
 
+#include <dspace/Error.h>
+
 namespace dspace::widgets {
 namespace {
 
@@ -91,6 +93,37 @@ QString KeysOfMenus(const QMenuBar* menus) {
     }
   });
   return "<table cellspacing=6>" + rows + "</table>";
+}
+
+QKeySequence FreeKey(const QMainWindow* window, const QString& text, const QString& key) {
+  const QKeySequence sequence(key);
+  const std::string label = "action '" + text.toStdString() + "'";
+  // Qt takes the first letter of a word that is no key.
+  const QString read = sequence.toString(QKeySequence::PortableText);
+  const auto last = [](const QString& keys) { return keys.section('+', -1).trimmed().toLower(); };
+  if (!key.isEmpty() && (sequence.count() != 1 || last(read) != last(key))) {
+    throw Error(Error::Kind::InvalidArgument, label,
+                "its key is \"" + key.toStdString() +
+                    "\"; accepted: one such as F6 or Ctrl+Shift+D");
+  }
+  for (const QAction* other : window->findChildren<QAction*>()) {
+    if (!sequence.isEmpty() && other->shortcut() == sequence) {
+      throw Error(Error::Kind::InvalidArgument, label,
+                  "its key " + key.toStdString() + " is that of '" +
+                      WithoutMnemonics(other->text()).toStdString() + "'; accepted: a free one");
+    }
+  }
+  return sequence;
+}
+
+QMenu* MenuNamed(const QMainWindow* window, const QString& title) {
+  QMenu* found = nullptr;
+  for (QAction* each : window->menuBar()->actions()) {
+    if (each->menu() && WithoutMnemonics(each->text()) == WithoutMnemonics(title)) {
+      found = each->menu();
+    }
+  }
+  return found;
 }
 
 void ShowKeys(QMainWindow* window, const QString& fixed) {

@@ -1,18 +1,26 @@
-// A table of the keys of a window's menus.
+// The keys of a window's menus, and a table of them.
 #ifndef DSPACE_WIDGETS_MENU_KEYS_H
 #define DSPACE_WIDGETS_MENU_KEYS_H
 
+#include <QKeySequence>
 #include <QString>
 #include <QStringList>
 
 class QAction;
 class QMainWindow;
+class QMenu;
 class QMenuBar;
 
 namespace dspace::widgets {
 
 // A menu's text without the marks of its letters ("&").
 QString WithoutMnemonics(QString text);
+// The sequence of one key of a new action `text`, such as "F6" or "Ctrl+Shift+D"; none for an empty
+// text. Throws Error(InvalidArgument) for what is none, and for the key of another action of the
+// window.
+QKeySequence FreeKey(const QMainWindow* window, const QString& text, const QString& key);
+// The menu of this title, in the menu bar; null: there is none.
+QMenu* MenuNamed(const QMainWindow* window, const QString& title);
 // A dialog: `fixed` is a table of HTML with keys and mouse buttons that are no menu's; below it
 // stand the menus' own.
 void ShowKeys(QMainWindow* window, const QString& fixed);

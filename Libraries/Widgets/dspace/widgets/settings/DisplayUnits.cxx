@@ -63,7 +63,8 @@ DisplayUnits& DisplayUnits::The() {
 }
 
 void DisplayUnits::Set(const UnitChoice& choice) {
-  if (choice.length == this->Choice_.length && choice.angle == this->Choice_.angle) {
+  if (choice.length == this->Choice_.length && choice.angle == this->Choice_.angle &&
+      choice.bodyFixed == this->Choice_.bodyFixed && choice.inertial == this->Choice_.inertial) {
     return;
   }
   this->Choice_ = choice;

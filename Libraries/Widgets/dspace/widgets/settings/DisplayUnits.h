@@ -1,5 +1,5 @@
-// The units in which docks show lengths and angles. Python, files and the wire keep metres and
-// degrees.
+// The units in which docks show lengths and angles, and which coordinates. Python, files and the
+// wire keep metres and degrees.
 #ifndef DSPACE_WIDGETS_DISPLAY_UNITS_H
 #define DSPACE_WIDGETS_DISPLAY_UNITS_H
 
@@ -15,6 +15,10 @@ struct UnitChoice {
   enum class Angle { Degree, Radian };
   Length length = Length::Metre;
   Angle angle = Angle::Degree;
+  // Of the point under the pointer, on terrain of a known body, from the body's centre: in axes
+  // that turn with it, and in those of J2000.
+  bool bodyFixed = false;
+  bool inertial = false;
 
   // From metres and from degrees to what is shown.
   double LengthFactor() const;

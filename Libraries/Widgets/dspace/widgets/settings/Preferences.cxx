@@ -18,8 +18,8 @@ int Whole(const QJsonValue& value, int low, int high, int otherwise) {
 }
 
 auto Tied(const Preferences& p) {
-  return std::tie(p.theme, p.samples, p.navigation, p.units.length, p.units.angle, p.recentFiles,
-                  p.restoreLayout);
+  return std::tie(p.theme, p.samples, p.navigation, p.units.length, p.units.angle,
+                  p.units.bodyFixed, p.units.inertial, p.recentFiles, p.restoreLayout);
 }
 
 } // namespace
@@ -38,6 +38,8 @@ Preferences Preferences::Read(const SettingsFile& file) {
   }
   read.units.length = UnitChoice::LengthOf(given["length"].toString()).value_or(read.units.length);
   read.units.angle = UnitChoice::AngleOf(given["angle"].toString()).value_or(read.units.angle);
+  read.units.bodyFixed = given["bodyFixed"].toBool(read.units.bodyFixed);
+  read.units.inertial = given["inertial"].toBool(read.units.inertial);
   read.recentFiles = Whole(given["recentFiles"], 0, MostRecentFiles, read.recentFiles);
   read.restoreLayout = given["restoreLayout"].toBool(read.restoreLayout);
   return read;
@@ -49,6 +51,8 @@ bool Preferences::Write(SettingsFile& file) const {
                                    {"navigation", this->navigation},
                                    {"length", UnitChoice::WordOf(this->units.length)},
                                    {"angle", UnitChoice::WordOf(this->units.angle)},
+                                   {"bodyFixed", this->units.bodyFixed},
+                                   {"inertial", this->units.inertial},
                                    {"recentFiles", this->recentFiles},
                                    {"restoreLayout", this->restoreLayout}});
 }

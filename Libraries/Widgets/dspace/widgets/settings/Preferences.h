@@ -19,7 +19,7 @@ struct Preferences {
   Theme theme = Theme::System;
   int samples = 2;              // a pixel along each side, of new views; 1 to MostSamples
   QString navigation = "orbit"; // of new views; one of Navigations()
-  UnitChoice units;             // of numbers in docks
+  UnitChoice units;             // of numbers in docks, and coordinates
   int recentFiles = 10;         // in the menu; 0 to MostRecentFiles
   bool restoreLayout = true;    // at start
 

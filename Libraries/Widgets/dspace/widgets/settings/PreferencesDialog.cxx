@@ -21,7 +21,10 @@ void Choose(QComboBox* box, const QString& word) {
 
 PreferencesDialog::PreferencesDialog(const Preferences& shown, QWidget* parent)
     : QDialog(parent), Theme_(new QComboBox), Samples_(new QSpinBox), Navigation_(new QComboBox),
-      Length_(new QComboBox), Angle_(new QComboBox), Recent_(new QSpinBox),
+      Length_(new QComboBox), Angle_(new QComboBox),
+      BodyFixed_(new QCheckBox(tr("Show &body-fixed coordinates under the pointer"))),
+      Inertial_(new QCheckBox(tr("Show &inertial coordinates (J2000) under the pointer"))),
+      Recent_(new QSpinBox),
       Restore_(new QCheckBox(tr("&Restore the docks of the last time at start"))) {
   this->setWindowTitle(tr("Preferences"));
   this->Theme_->addItem(tr("As the desktop"), WordOf(Theme::System));
@@ -42,6 +45,10 @@ PreferencesDialog::PreferencesDialog(const Preferences& shown, QWidget* parent)
   this->Angle_->addItem(tr("degrees"), UnitChoice::WordOf(UnitChoice::Angle::Degree));
   this->Angle_->addItem(tr("radians (rad)"), UnitChoice::WordOf(UnitChoice::Angle::Radian));
   this->Angle_->setToolTip(tr("The unit of angles that docks show; Python keeps degrees"));
+  this->BodyFixed_->setToolTip(
+      tr("On terrain: from the body's centre, Z to its north pole, X to longitude 0"));
+  this->Inertial_->setToolTip(
+      tr("On terrain: from the body's centre in the axes of J2000, at the scene's time"));
   this->Recent_->setRange(0, Preferences::MostRecentFiles);
   this->Recent_->setToolTip(
       tr("Files in the menu Open recent (0 to %1)").arg(Preferences::MostRecentFiles));
@@ -52,6 +59,8 @@ PreferencesDialog::PreferencesDialog(const Preferences& shown, QWidget* parent)
   form->addRow(tr("&Navigation of new views"), this->Navigation_);
   form->addRow(tr("&Lengths"), this->Length_);
   form->addRow(tr("&Angles"), this->Angle_);
+  form->addRow(this->BodyFixed_);
+  form->addRow(this->Inertial_);
   form->addRow(tr("Recent &files"), this->Recent_);
   form->addRow(this->Restore_);
   auto* buttons = new QDialogButtonBox(QDialogButtonBox::Ok | QDialogButtonBox::Cancel |
@@ -72,8 +81,8 @@ PreferencesDialog::PreferencesDialog(const Preferences& shown, QWidget* parent)
   // Tab goes through the controls, then through the buttons from left to right. Without this order
   // it reaches one of the buttons only.
   QWidget* last = this->Theme_;
-  QList<QWidget*> order{this->Samples_, this->Navigation_, this->Length_,
-                        this->Angle_,   this->Recent_,     this->Restore_};
+  QList<QWidget*> order{this->Samples_,   this->Navigation_, this->Length_, this->Angle_,
+                        this->BodyFixed_, this->Inertial_,   this->Recent_, this->Restore_};
   for (int i = 0; i < buttons->layout()->count(); ++i) {
     order << buttons->layout()->itemAt(i)->widget(); // null: a space
   }
@@ -92,6 +101,8 @@ void PreferencesDialog::Show(const Preferences& shown) {
   Choose(this->Navigation_, shown.navigation);
   Choose(this->Length_, UnitChoice::WordOf(shown.units.length));
   Choose(this->Angle_, UnitChoice::WordOf(shown.units.angle));
+  this->BodyFixed_->setChecked(shown.units.bodyFixed);
+  this->Inertial_->setChecked(shown.units.inertial);
   this->Recent_->setValue(shown.recentFiles);
   this->Restore_->setChecked(shown.restoreLayout);
 }
@@ -105,6 +116,8 @@ Preferences PreferencesDialog::Chosen() const {
       UnitChoice::LengthOf(this->Length_->currentData().toString()).value_or(chosen.units.length);
   chosen.units.angle =
       UnitChoice::AngleOf(this->Angle_->currentData().toString()).value_or(chosen.units.angle);
+  chosen.units.bodyFixed = this->BodyFixed_->isChecked();
+  chosen.units.inertial = this->Inertial_->isChecked();
   chosen.recentFiles = this->Recent_->value();
   chosen.restoreLayout = this->Restore_->isChecked();
   return chosen;

@@ -31,6 +31,8 @@ private:
   QComboBox* Navigation_;
   QComboBox* Length_;
   QComboBox* Angle_;
+  QCheckBox* BodyFixed_;
+  QCheckBox* Inertial_;
   QSpinBox* Recent_;
   QCheckBox* Restore_;
 };

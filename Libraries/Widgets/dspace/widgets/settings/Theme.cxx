@@ -7,6 +7,8 @@
 #include <QStyle>
 #include <QStyleFactory>
 
+#include <dspace/widgets/settings/OutlinedStyle.h>
+
 namespace dspace::widgets {
 namespace {
 
@@ -92,9 +94,11 @@ QPalette PaletteOf(Theme theme) {
 
 void ApplyTheme(Theme theme) {
   AtStart(); // before it changes
-  const QString style = theme == Theme::System ? AtStart().style : QStringLiteral("fusion");
-  if (QApplication::style()->name() != style) {
-    QApplication::setStyle(QStyleFactory::create(style));
+  const bool outlined = qobject_cast<OutlinedStyle*>(QApplication::style()) != nullptr;
+  if (theme != Theme::System && !outlined) {
+    QApplication::setStyle(new OutlinedStyle);
+  } else if (theme == Theme::System && outlined) {
+    QApplication::setStyle(QStyleFactory::create(AtStart().style));
   }
   QApplication::setPalette(PaletteOf(theme));
 }

@@ -17,8 +17,8 @@ std::optional<Theme> ThemeOf(const QString& word);
 
 // Of a theme; System: the palette that the application started with.
 QPalette PaletteOf(Theme theme);
-// Gives the application the theme's palette, and Qt's style Fusion, which follows palettes, for
-// Dark and Light. Widgets that are there already follow.
+// Gives the application the theme's palette, and OutlinedStyle, which follows palettes, for Dark
+// and Light. Widgets that are there already follow.
 void ApplyTheme(Theme theme);
 bool IsDark(const QPalette& palette);
 

@@ -10,6 +10,7 @@
 #include <QImage>
 #include <QKeyEvent>
 #include <QMouseEvent>
+#include <QNativeGestureEvent>
 #include <QPainter>
 #include <QTimer>
 #include <QWheelEvent>
@@ -454,7 +455,10 @@ void ViewportWidget::mouseMoveEvent(QMouseEvent* event) {
 void ViewportWidget::wheelEvent(QWheelEvent* event) {
   ViewportInput input =
       this->Impl_->InputAt(ViewportInput::Type::Wheel, event->position(), event->modifiers());
-  input.wheel = event->angleDelta().y() / 120.0; // a notch is 15 degrees, in eighths
+  constexpr double Notch_px = 60.0; // that the fingers move on a touchpad without angles
+  input.wheel = !event->angleDelta().isNull()
+                    ? event->angleDelta().y() / 120.0 // a notch is 15 degrees, in eighths
+                    : event->pixelDelta().y() / Notch_px;
   if (input.wheel != 0.0) {
     this->Impl_->Send(input);
   }
@@ -477,6 +481,19 @@ void ViewportWidget::keyPressEvent(QKeyEvent* event) {
 }
 
 bool ViewportWidget::event(QEvent* event) {
+  if (event->type() == QEvent::NativeGesture) {
+    const auto* gesture = static_cast<QNativeGestureEvent*>(event);
+    if (gesture->gestureType() == Qt::ZoomNativeGesture) { // a pinch on a touchpad
+      ViewportInput input = this->Impl_->InputAt(ViewportInput::Type::Wheel, gesture->position(),
+                                                 gesture->modifiers());
+      // By as much nearer as the fingers go apart.
+      input.wheel = std::log(std::clamp(1.0 + gesture->value(), 0.1, 10.0)) /
+                    std::log(OrbitController::StepFactor);
+      this->Impl_->Send(input);
+      event->accept();
+      return true;
+    }
+  }
   if (event->type() == QEvent::ScreenChangeInternal) {
     this->Impl_->Resize();
   }

@@ -38,6 +38,7 @@
 #include <dspace/widgets/desktop/RecentFiles.h>
 #include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/operator/MessageWidget.h>
+#include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/terrain/TerrainWidget.h>
@@ -50,6 +51,7 @@
 #include <dspace/widgets/window/KeyTable.h>
 #include <dspace/widgets/window/MeasureMarks.h>
 #include <dspace/widgets/window/MovieTrack.h>
+#include <dspace/widgets/window/PlugInOverlays.h>
 #include <dspace/widgets/window/PlugIns.h>
 #include <dspace/widgets/window/PointerReadout.h>
 #include <dspace/widgets/window/Shell.h>
@@ -67,6 +69,10 @@ namespace dspace::widgets {
 namespace {
 
 const char* const SceneName = "scene"; // of dspace.Session.scene() without a name
+
+std::string TextOf(const QJsonObject& answer) {
+  return QJsonDocument(answer).toJson(QJsonDocument::Compact).toStdString();
+}
 
 } // namespace
 
@@ -122,9 +128,12 @@ MainWindow::MainWindow(const QString& packages)
       if (this->Movies_ && MovieTrack::Handles(given)) {
         this->Movies_->Handle(given);
       } else if (this->Panes_ && ViewPanes::Handles(given)) {
-        this->Panes_->Handle(given);
+        return TextOf(this->Panes_->Handle(given));
       }
       return std::string("{}");
+    }
+    if (PlugInOverlays::Handles(given)) {
+      return this->Overlays_ ? TextOf(this->Overlays_->Handle(given)) : std::string("{}");
     }
     if (MeasureMarks::Handles(given)) {
       if (this->Marks_) {
@@ -133,10 +142,8 @@ MainWindow::MainWindow(const QString& packages)
       }
       return std::string("{}");
     }
-    return QJsonDocument(Shell::Takes(given) ? this->Shell_->Handle(given)
-                                             : this->PlugIns_->Handle(given))
-        .toJson()
-        .toStdString();
+    return TextOf(Shell::Takes(given) ? this->Shell_->Handle(given)
+                                      : this->PlugIns_->Handle(given));
   };
   host.active = [this] { return this->Scenes_->ActiveScene(); };
   host.plot = [this](vtkObject* of, const std::string& scene, const std::string& title) {
@@ -224,6 +231,8 @@ MainWindow::~MainWindow() {
   this->MessageDock_ = nullptr;
   delete this->Marks_;
   this->Marks_ = nullptr;
+  delete this->Overlays_;
+  this->Overlays_ = nullptr;
   delete this->MeasureDock_;
   this->MeasureDock_ = nullptr;
   delete this->TerrainDock_;
@@ -321,6 +330,7 @@ void MainWindow::AddMeasure() {
     this->Run(QStringLiteral("app.measured.profile.save(%1)").arg(Quoted(path)));
   });
   this->Marks_ = new MeasureMarks(this->Measure_, this);
+  this->Overlays_ = new PlugInOverlays(this);
   this->addDockWidget(Qt::LeftDockWidgetArea, this->MeasureDock_);
   this->tabifyDockWidget(this->TerrainDock_, this->MeasureDock_);
   this->SceneDock_->raise();
@@ -538,6 +548,7 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   this->ViewKeys_->Add(widget, viewport);
   this->Pointer_->Add(widget, of, viewport);
   this->Marks_->Add(widget, of, viewport);
+  this->Overlays_->Add(widget, of, viewport);
   this->Libraries_->AddView(widget);
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;
@@ -613,6 +624,19 @@ bool MainWindow::IsSettled() const {
 }
 
 void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {
+  connect(tree, &SceneTreeWidget::selected, this, [this, tree](const SceneItem& item) {
+    const auto scene = tree->Model()->GetScene();
+    if (!this->Marks_ || !scene || item.frame == NoFrame) {
+      return;
+    }
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero(); // of what the row stands for
+    if (const auto object = scene->Objects().find(item.object); object != scene->Objects().end()) {
+      origin = object->second.X_FO.translation();
+    }
+    const Eigen::Vector3d p = scene->Frames().WorldPose(item.frame).Apply(origin);
+    const auto [of, name] = this->Scenes_->ActiveScene();
+    this->Marks_->TakePoint(of, name, {p.x(), p.y(), p.z()});
+  });
   const auto run = [this](const QString& line) { return this->Run(line); };
   this->Panes_ = new ViewPanes(this);
   connect(this->Panes_, &ViewPanes::drawn, this, [this](const QString& viewport) {

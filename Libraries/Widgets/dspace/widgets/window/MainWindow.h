@@ -33,6 +33,7 @@ class PythonInterpreter;
 class SceneTreeWidget;
 class ShownScenes;
 class MessageWidget;
+class PlugInOverlays;
 class PlugIns;
 class PointerReadout;
 class Shell;
@@ -125,6 +126,7 @@ private:
   TerrainWidget* Terrain_ = nullptr;
   MeasureWidget* Measure_ = nullptr;
   MeasureMarks* Marks_ = nullptr;
+  PlugInOverlays* Overlays_ = nullptr;
   MovieTrack* Movies_ = nullptr;
   ViewPanes* Panes_ = nullptr;
   ViewSelection* Selection_ = nullptr;

@@ -1,19 +1,17 @@
 #include <dspace/widgets/window/MeasureMarks.h>
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <vector>
 
 #include <QPainter>
-
-#include "vtkDspaceViewport.h"
 
 #include <dspace/proto/commands.pb.h>
 #include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/OverlayPane.h>
+#include <dspace/widgets/window/ProjectedPoints.h>
 
 namespace dspace::widgets {
 namespace {
@@ -22,43 +20,6 @@ constexpr std::size_t MostPainted = 300; // places of a profile
 constexpr double Radius = 4.0;           // of a point [pixels]
 const QColor LineColor(0xff, 0xd2, 0x3f);
 const QColor Halo(0, 0, 0, 150);
-
-// The places of points in a view, in its own coordinates; NaN: behind the camera.
-std::vector<QPointF> Projected(const ShownSession& session, ViewportWidget* view,
-                               const std::string& scene,
-                               const std::vector<MeasureWidget::Point>& points) {
-  vtkDspaceViewport* shown = view->GetViewport();
-  v1::Command command;
-  command.set_scene(scene);
-  v1::ProjectPoints* project = command.mutable_project_points();
-  project->mutable_camera()->set_vantage(shown->GetVantage());
-  project->mutable_camera()->set_camera(shown->GetCamera());
-  project->mutable_camera()->set_width(std::uint32_t(shown->GetWidth()));
-  project->mutable_camera()->set_height(std::uint32_t(shown->GetHeight()));
-  for (const MeasureWidget::Point& point : points) {
-    for (const double value : point) {
-      project->add_point(value);
-    }
-  }
-  v1::Reply reply;
-  std::vector<QPointF> places;
-  if (!reply.ParseFromString(session.Execute(command.SerializeAsString())) ||
-      reply.project().pixel_size() != 2 * int(points.size())) {
-    return places;
-  }
-  const double x = double(view->width()) / shown->GetWidth();
-  const double y = double(view->height()) / shown->GetHeight();
-  for (int i = 0; i < reply.project().pixel_size(); i += 2) {
-    places.emplace_back((reply.project().pixel(i) + 0.5) * x,
-                        (reply.project().pixel(i + 1) + 0.5) * y);
-  }
-  return places;
-}
-
-bool IsSeen(const QPointF& place) {
-  return std::isfinite(place.x()) && std::isfinite(place.y()) && std::abs(place.x()) < 1e5 &&
-         std::abs(place.y()) < 1e5;
-}
 
 // At most MostPainted of them, the first and the last one included.
 std::vector<MeasureWidget::Point> Thinned(const std::vector<MeasureWidget::Point>& path) {
@@ -115,14 +76,22 @@ bool MeasureMarks::Take(vtkObject* of, const std::string& viewport, const std::s
   if (pick.object() == 0) {
     return true; // the sky: the click is no selection, either
   }
-  const std::string scene = ShownSession(of).SceneOf(viewport);
+  return this->TakePoint(of, ShownSession(of).SceneOf(viewport),
+                         {pick.in_root().x(), pick.in_root().y(), pick.in_root().z()},
+                         pick.terrain());
+}
+
+bool MeasureMarks::TakePoint(vtkObject* of, const std::string& scene,
+                             const std::array<double, 3>& point, const std::string& terrain) {
+  if (this->Widget_->Used().isEmpty()) {
+    return false;
+  }
   if (of != this->Of_ || scene != this->Scene_) {
     this->Widget_->Clear();
     this->Of_ = of;
     this->Scene_ = scene;
   }
-  this->Widget_->Add({pick.in_root().x(), pick.in_root().y(), pick.in_root().z()},
-                     QString::fromStdString(pick.terrain()));
+  this->Widget_->Add(point, QString::fromStdString(terrain));
   return true;
 }
 
@@ -156,14 +125,14 @@ void MeasureMarks::Paint(QPainter& painter, ViewportWidget* view) {
       return;
     }
     std::vector<QPointF> path =
-        Projected(session, view, this->Scene_, Thinned(this->Widget_->Path()));
+        ProjectedPoints(session, *view, this->Scene_, Thinned(this->Widget_->Path()));
     if (this->Widget_->IsClosed() && !path.empty()) {
       path.push_back(path.front());
     }
     for (const auto& [color, width] : {std::pair(Halo, 4.0), std::pair(LineColor, 2.0)}) {
       painter.setPen(QPen(color, width, Qt::SolidLine, Qt::RoundCap));
       for (std::size_t i = 1; i < path.size(); ++i) {
-        if (IsSeen(path[i - 1]) && IsSeen(path[i])) {
+        if (IsPaintable(path[i - 1]) && IsPaintable(path[i])) {
           painter.drawLine(path[i - 1], path[i]);
         }
       }
@@ -173,12 +142,12 @@ void MeasureMarks::Paint(QPainter& painter, ViewportWidget* view) {
     if (pointed) {
       points.push_back(*this->Widget_->Pointed());
     }
-    const std::vector<QPointF> places = Projected(session, view, this->Scene_, points);
+    const std::vector<QPointF> places = ProjectedPoints(session, *view, this->Scene_, points);
     painter.setPen(QPen(Halo, 1.5));
     for (std::size_t i = 0; i < places.size(); ++i) {
       const bool last = pointed && i + 1 == places.size();
       painter.setBrush(last ? QColor(Qt::white) : LineColor);
-      if (IsSeen(places[i])) {
+      if (IsPaintable(places[i])) {
         painter.drawEllipse(places[i], last ? 1.5 * Radius : Radius, last ? 1.5 * Radius : Radius);
       }
     }

@@ -2,6 +2,7 @@
 #ifndef DSPACE_WIDGETS_MEASURE_MARKS_H
 #define DSPACE_WIDGETS_MEASURE_MARKS_H
 
+#include <array>
 #include <map>
 #include <string>
 
@@ -31,6 +32,10 @@ public:
   // clicked on. A click on a point of another scene starts anew.
   bool Take(vtkObject* of, const std::string& viewport, const std::string& event,
             const std::string& reply);
+  // A point of a scene (root [m]) that was chosen in another way, such as the origin of an object's
+  // row: whether the widget took it. One of another scene starts anew.
+  bool TakePoint(vtkObject* of, const std::string& scene, const std::array<double, 3>& point,
+                 const std::string& terrain = {});
   // {"do": "measured", ...}: what Python measured in a scene (MeasureWidget::Show).
   static bool Handles(const QJsonObject& request);
   void Handle(const QJsonObject& request, vtkObject* of, const std::string& scene);

@@ -3,13 +3,16 @@
 #include <QAction>
 #include <QDockWidget>
 #include <QKeySequence>
+#include <QLabel>
 #include <QMainWindow>
 #include <QMenu>
 #include <QMenuBar>
+#include <QStatusBar>
 
 #include <dspace/Error.h>
 #include <dspace/widgets/desktop/MenuKeys.h>
 #include <dspace/widgets/panel/PanelWidget.h>
+#include <dspace/widgets/settings/Theme.h>
 
 namespace dspace::widgets {
 namespace {
@@ -25,6 +28,9 @@ PlugIns::PlugIns(QMainWindow* window) : QObject(window), Window_(window) {}
 PlugIns::~PlugIns() {
   for (auto& [number, dock] : this->Docks_) {
     delete dock.data();
+  }
+  for (auto& [number, readOut] : this->ReadOuts_) {
+    delete readOut.label.data();
   }
 }
 
@@ -92,28 +98,10 @@ int PlugIns::AddPanel(const QString& title, const QString& area) {
 
 int PlugIns::AddAction(const QString& menu, const QString& text, const QString& key,
                        const QString& tip) {
-  const QKeySequence sequence(key);
-  // Qt takes the first letter of a word that is no key.
-  const QString read = sequence.toString(QKeySequence::PortableText);
-  const auto last = [](const QString& keys) { return keys.section('+', -1).trimmed().toLower(); };
-  if (!key.isEmpty() && (sequence.count() != 1 || last(read) != last(key))) {
-    Refuse("action '" + text + "'",
-           "its key is \"" + key + "\"; accepted: one such as F6 or Ctrl+Shift+D");
-  }
-  for (const QAction* other : this->Window_->findChildren<QAction*>()) {
-    if (!sequence.isEmpty() && other->shortcut() == sequence) {
-      Refuse("action '" + text + "'", "its key " + key + " is that of '" +
-                                          WithoutMnemonics(other->text()) +
-                                          "'; accepted: a free one");
-    }
-  }
-  QMenu* in = nullptr;
-  if (!menu.isEmpty()) {
-    for (QAction* each : this->Window_->menuBar()->actions()) {
-      in = each->menu() && WithoutMnemonics(each->text()) == WithoutMnemonics(menu) ? each->menu()
-                                                                                    : in;
-    }
-    in = in ? in : this->Window_->menuBar()->addMenu(menu);
+  const QKeySequence sequence = FreeKey(this->Window_, text, key);
+  QMenu* in = menu.isEmpty() ? nullptr : MenuNamed(this->Window_, menu);
+  if (!menu.isEmpty() && !in) {
+    in = this->Window_->menuBar()->addMenu(menu);
   }
   const int number = ++this->LastAction_;
   auto* action = new QAction(text, this->Window_);
@@ -128,8 +116,52 @@ int PlugIns::AddAction(const QString& menu, const QString& text, const QString& 
   return number;
 }
 
+int PlugIns::AddReadOut(const QString& name, const QString& text, const QString& tip) {
+  auto* label = new QLabel(this->Window_);
+  label->setObjectName("read-out " + name);
+  label->setTextFormat(Qt::PlainText);
+  label->setToolTip(tip.isEmpty() ? name : tip);
+  this->Window_->statusBar()->addPermanentWidget(label);
+  this->ReadOuts_[++this->LastReadOut_] = {name, label};
+  this->Tell(this->LastReadOut_, text, {});
+  return this->LastReadOut_;
+}
+
+void PlugIns::Tell(int readOut, const QString& text, const QString& state) {
+  const ReadOut& told = this->ReadOuts_.at(readOut);
+  QPalette palette; // else of the theme
+  if (state == "amber" || state == "red") {
+    palette.setColor(
+        QPalette::WindowText,
+        AccentOf(state == "red" ? Accent::Error : Accent::Warning, this->Window_->palette()));
+  } else if (!state.isEmpty()) {
+    Refuse("read-out '" + told.name + "'",
+           "its state is \"" + state + "\"; accepted: \"\", amber, red");
+  }
+  told.label->setPalette(palette);
+  told.label->setText(told.name + ' ' + text);
+}
+
 QJsonObject PlugIns::Handle(const QJsonObject& request) {
   const QString what = request["do"].toString();
+  if (what == "read_out") {
+    return {{"read_out", this->AddReadOut(request["name"].toString(), request["text"].toString(),
+                                          request["tip"].toString())}};
+  }
+  if (what == "tell" || what == "untell") {
+    const int number = request["read_out"].toInt();
+    if (const auto found = this->ReadOuts_.find(number);
+        found == this->ReadOuts_.end() || !found->second.label) {
+      throw Error(Error::Kind::NotFound, "read-out " + std::to_string(number), "it is closed");
+    }
+    if (what == "tell") {
+      this->Tell(number, request["text"].toString(), request["state"].toString());
+    } else {
+      delete this->ReadOuts_[number].label.data();
+      this->ReadOuts_.erase(number);
+    }
+    return {};
+  }
   if (what == "panel") {
     return {{"panel", this->AddPanel(request["title"].toString(), request["area"].toString())}};
   }
@@ -152,8 +184,9 @@ QJsonObject PlugIns::Handle(const QJsonObject& request) {
   } else if (what == "close") {
     delete this->Docks_[number].data();
   } else {
-    Refuse("plug-in",
-           "it asks for \"" + what + "\"; accepted: panel, row, set, close, action, key");
+    Refuse("plug-in", "it asks for \"" + what +
+                          "\"; accepted: panel, row, set, close, action, "
+                          "key, read_out, tell, untell");
   }
   return {};
 }

@@ -1,4 +1,4 @@
-// What plug-ins add to a window: docks, menu entries, keys.
+// What plug-ins add to a window: docks, menu entries, keys, read-outs of the status bar.
 #ifndef DSPACE_WIDGETS_PLUG_INS_H
 #define DSPACE_WIDGETS_PLUG_INS_H
 
@@ -10,6 +10,7 @@
 #include <QPointer>
 
 class QDockWidget;
+class QLabel;
 class QMainWindow;
 
 namespace dspace::widgets {
@@ -27,6 +28,10 @@ class PanelWidget;
 //   number}
 //   {"do": "key", "key": ...}                                                   -> {"action":
 //   number}
+//   {"do": "read_out", "name": ..., "text": ..., "tip": ...}                    -> {"read_out":
+//   number}
+//   {"do": "tell", "read_out": n, "text": ..., "state": "", "amber" or "red"}
+//   {"do": "untell", "read_out": n}
 class PlugIns : public QObject {
   Q_OBJECT
 
@@ -35,7 +40,7 @@ public:
   ~PlugIns() override; // with its docks
 
   // Throws Error: InvalidArgument for what is not listed above and for keys that are taken,
-  // NotFound for a panel that is closed.
+  // NotFound for a panel or a read-out that is closed.
   QJsonObject Handle(const QJsonObject& request);
   PanelWidget* Panel(int panel) const; // null: it is closed
 
@@ -49,12 +54,20 @@ signals:
 
 private:
   int AddPanel(const QString& title, const QString& area);
+  int AddReadOut(const QString& name, const QString& text, const QString& tip);
+  void Tell(int readOut, const QString& text, const QString& state);
   int AddAction(const QString& menu, const QString& text, const QString& key, const QString& tip);
 
   QMainWindow* Window_;
   std::map<int, QPointer<QDockWidget>> Docks_;
   int LastPanel_ = 0;
   int LastAction_ = 0;
+  struct ReadOut {
+    QString name;
+    QPointer<QLabel> label;
+  };
+  std::map<int, ReadOut> ReadOuts_;
+  int LastReadOut_ = 0;
 };
 
 } // namespace dspace::widgets

@@ -38,6 +38,12 @@ QString Length(double metres, const UnitChoice& units) {
              : QObject::tr("no data");
 }
 
+// "x 1.000  y 2.000  z 3.000 m"
+QString Place(const v1::Vector3& at, const UnitChoice& units) {
+  return QObject::tr("x %1  y %2  z %3 %4")
+      .arg(Length(at.x(), units), Length(at.y(), units), Length(at.z(), units), units.LengthUnit());
+}
+
 // "137.441635°", "2.398809 rad"
 QString Angle(double degrees, int decimals, const UnitChoice& units) {
   const QString unit = units.AngleUnit();
@@ -156,7 +162,7 @@ void PointerReadout::Look() {
   this->Pause_ms_ = std::max(PickRest_ms, (PickShare - 1) * int(clock.elapsed()));
 }
 
-QString PointerReadout::TextOf(const std::string& picked, const std::string& slope) {
+QString PointerReadout::TextOf(const std::string& picked, const std::string& slope, bool all) {
   v1::Reply reply;
   if (!reply.ParseFromString(picked) || reply.pick().object() == 0) {
     return {};
@@ -167,10 +173,7 @@ QString PointerReadout::TextOf(const std::string& picked, const std::string& slo
   const QString part = Shortened(pick.part());
   parts << Shortened(pick.object_name()) + (part.isEmpty() ? QString() : " / " + part);
   if (pick.terrain().empty()) {
-    const v1::Vector3& at = pick.in_root();
-    parts << tr("x %1  y %2  z %3 %4")
-                 .arg(Length(at.x(), units), Length(at.y(), units), Length(at.z(), units),
-                      units.LengthUnit());
+    parts << Place(pick.in_root(), units);
   } else {
     parts << tr("map %1, %2 %3")
                  .arg(Length(pick.map().x(), units), Length(pick.map().y(), units),
@@ -178,6 +181,12 @@ QString PointerReadout::TextOf(const std::string& picked, const std::string& slo
     if (pick.has_coordinates()) {
       parts << Side(pick.coordinates().longitude_deg(), tr("E"), tr("W"), units) + "  " +
                    Side(pick.coordinates().latitude_deg(), tr("N"), tr("S"), units);
+    }
+    if (pick.has_coordinates() && (all || units.bodyFixed)) {
+      parts << tr("body-fixed %1").arg(Place(pick.coordinates().body_fixed(), units));
+    }
+    if (pick.coordinates().has_inertial() && (all || units.inertial)) {
+      parts << tr("J2000 %1").arg(Place(pick.coordinates().inertial(), units));
     }
     parts << tr("height %1 %2").arg(Length(pick.map().z(), units), units.LengthUnit());
     v1::Reply told;

@@ -19,8 +19,8 @@ class ViewportWidget;
 // new picture of the view: at most ten times a second and a tenth of the time, from a picture that
 // is drawn already, and not while a button is held. Of an object the label shows the name and the
 // point in the root [m]; of terrain the map coordinates [m], longitude and latitude [deg], height
-// above the vertical datum [m], slope [deg] and fields too. Its text can be selected; its context
-// menu copies it.
+// above the vertical datum [m], slope [deg] and fields too; body-fixed and inertial coordinates
+// where they are chosen (UnitChoice). Its text can be selected; its context menu copies it.
 class PointerReadout : public QLabel {
   Q_OBJECT
 
@@ -31,8 +31,8 @@ public:
   void Add(ViewportWidget* widget, vtkObject* of, const std::string& viewport);
 
   // Of a serialized Reply with a PickReply, and one with the terrain's slope there (may be empty).
-  // "": nothing was hit.
-  static QString TextOf(const std::string& pick, const std::string& slope);
+  // "": nothing was hit. `all`: with the coordinates that are not chosen, too.
+  static QString TextOf(const std::string& pick, const std::string& slope, bool all = false);
 
 protected:
   bool eventFilter(QObject* watched, QEvent* event) override;

@@ -38,7 +38,7 @@ QMenu* OpenViewMenu(ViewportWidget* widget, const ShownSession& session, const s
   menu->setObjectName(QStringLiteral("view menu"));
   menu->setAttribute(Qt::WA_DeleteOnClose);
   QObject::connect(menu->addAction(Text("&Copy coordinates")), &QAction::triggered, menu,
-                   [line = PointerReadout::TextOf(picked.SerializeAsString(), {})] {
+                   [line = PointerReadout::TextOf(picked.SerializeAsString(), {}, true)] {
                      QGuiApplication::clipboard()->setText(line);
                    });
   QAction* const goal = menu->addAction(Text("Send as &goal"));

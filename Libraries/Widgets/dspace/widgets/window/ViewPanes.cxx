@@ -71,9 +71,12 @@ bool ViewPanes::Handles(const QJsonObject& request) {
   return request["do"].toString() == "views";
 }
 
-void ViewPanes::Handle(const QJsonObject& request) {
+QJsonObject ViewPanes::Handle(const QJsonObject& request) {
   const QString what = request["what"].toString();
   const QString view = request["view"].toString();
+  if (what == "current") {
+    return {{"view", QString::fromStdString(this->Current(nullptr).viewport)}};
+  }
   if (what == "maximize") {
     this->Maximize(this->Find(view).dock);
   } else if (what == "restore") {
@@ -94,8 +97,9 @@ void ViewPanes::Handle(const QJsonObject& request) {
   } else {
     throw Error(Error::Kind::InvalidArgument, "views",
                 "there is no \"" + what.toStdString() +
-                    "\"; accepted: maximize, restore, tile, copy, split, watch");
+                    "\"; accepted: current, maximize, restore, tile, copy, split, watch");
   }
+  return {};
 }
 
 void ViewPanes::Maximize(QDockWidget* dock) {

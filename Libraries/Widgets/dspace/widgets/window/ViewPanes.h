@@ -43,10 +43,11 @@ public:
   // {"do": "views", "what": "maximize", "copy" (the picture to the clipboard), "view": name}
   // {"what": "split", "view": name, "beside": name, "side": "right" or "below"}
   // {"what": "restore"}, {"what": "tile"}
+  // {"what": "current"} -> {"view": the name of Current(), or ""}
   // {"what": "watch", "view": name, "on": bool}: drawn() tells of its pictures.
   // Throws Error: NotFound for a view that is not open, InvalidArgument for other words.
   static bool Handles(const QJsonObject& request);
-  void Handle(const QJsonObject& request);
+  QJsonObject Handle(const QJsonObject& request);
 
   // A floating dock fills its screen, another one its window.
   void Maximize(QDockWidget* dock);

@@ -107,23 +107,7 @@ QDockWidget* WindowPlugIn::AddDock(const QString& title, QWidget* content,
 
 QAction* WindowPlugIn::MakeAction(const QString& text, const QString& key,
                                   std::function<void()> chosen) {
-  const QKeySequence sequence(key);
-  const std::string label = "action '" + text.toStdString() + "'";
-  // Qt takes the first letter of a word that is no key.
-  const QString read = sequence.toString(QKeySequence::PortableText).section('+', -1);
-  if (!key.isEmpty() && (sequence.count() != 1 ||
-                         read.compare(key.section('+', -1).trimmed(), Qt::CaseInsensitive) != 0)) {
-    throw Error(Error::Kind::InvalidArgument, label,
-                "its key is \"" + key.toStdString() +
-                    "\"; accepted: one such as F6 or Ctrl+Shift+D");
-  }
-  for (const QAction* other : this->Window_->findChildren<QAction*>()) {
-    if (!sequence.isEmpty() && other->shortcut() == sequence) {
-      throw Error(Error::Kind::InvalidArgument, label,
-                  "its key " + key.toStdString() + " is that of '" +
-                      WithoutMnemonics(other->text()).toStdString() + "'; accepted: a free one");
-    }
-  }
+  const QKeySequence sequence = FreeKey(this->Window_, text, key);
   auto* action = new QAction(text, this->Window_);
   action->setShortcut(sequence);
   connect(action, &QAction::triggered, this,
@@ -136,11 +120,7 @@ QAction* WindowPlugIn::MakeAction(const QString& text, const QString& key,
 QAction* WindowPlugIn::AddAction(const QString& menu, const QString& text, const QString& key,
                                  std::function<void()> chosen) {
   QAction* action = this->MakeAction(text, key, std::move(chosen));
-  QMenu* in = nullptr;
-  for (QAction* each : this->Window_->menuBar()->actions()) {
-    in = each->menu() && WithoutMnemonics(each->text()) == WithoutMnemonics(menu) ? each->menu()
-                                                                                  : in;
-  }
+  QMenu* in = MenuNamed(this->Window_, menu);
   if (!in) {
     in = this->Window_->menuBar()->addMenu(menu);
     this->Made_.emplace_back(in);

@@ -1,0 +1,32 @@
+// Qt's style Fusion with outlines of controls that can be seen.
+#ifndef DSPACE_WIDGETS_OUTLINED_STYLE_H
+#define DSPACE_WIDGETS_OUTLINED_STYLE_H
+
+#include <QColor>
+#include <QProxyStyle>
+
+class QPalette;
+
+namespace dspace::widgets {
+
+// Fusion draws the edges of boxes a little darker than the window, so that in a dark theme they are
+// not seen. This style draws them again, in OutlineOf().
+class OutlinedStyle : public QProxyStyle {
+  Q_OBJECT
+
+public:
+  OutlinedStyle();
+
+  void drawPrimitive(PrimitiveElement element, const QStyleOption* option, QPainter* painter,
+                     const QWidget* widget) const override;
+  void drawComplexControl(ComplexControl control, const QStyleOptionComplex* option,
+                          QPainter* painter, const QWidget* widget) const override;
+};
+
+// Of controls: its contrast to Window, Base and Button is 3 at least, as WCAG 2.1 asks of them
+// (1.4.11). `enabled`: controls that do nothing may be dimmer.
+QColor OutlineOf(const QPalette& palette, bool enabled);
+
+} // namespace dspace::widgets
+
+#endif
