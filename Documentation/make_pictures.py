@@ -11,11 +11,14 @@ from pictures import application, cookbook, lenses, light, measure, models, rang
 from pictures.paths import DATA, IMAGES  # noqa: E402
 
 EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
-              vtk.own_object, lenses.lenses, lenses.live_lens, lenses.shutters, light.photometry, sky.stars, measure.measure_sites, measure.measure_ensemble, application.application,
+              vtk.own_object, lenses.lenses, lenses.live_lens, lenses.shutters, light.photometry, sky.stars,
+              measure.measure_sites, measure.measure_ensemble, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages)
-OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats, terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
-                terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth, application.application_terrain, application.application_terrain_dock, application.application_measure,
+OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats,
+                terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
+                terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth,
+                application.application_terrain, application.application_terrain_dock, application.application_measure,
                 trajectories.artemis_inertial, trajectories.artemis_rotating, sky.constellations, sky.body_descent,
                 sky.artemis_photo)
 
