@@ -14,7 +14,8 @@ EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo
               vtk.own_object, lenses.lenses, lenses.live_lens, lenses.shutters, light.photometry, sky.stars,
               measure.measure_sites, measure.measure_ensemble, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
-              application.application_keys, application.application_map, application.application_messages)
+              application.application_keys, application.application_map, application.application_messages,
+              application.application_overlay)
 OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats,
                 terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.valles_marineris, terrain.two_views, terrain.earth,

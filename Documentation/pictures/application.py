@@ -123,6 +123,36 @@ def application_dark():
         _screenshot("application_dark", "--after", str(seconds), script.name)
 
 
+# What a plug-in paints over a view and shows in the status bar, in the dark theme.
+OVERLAY = """
+app.set_theme("dark")
+app.demo()
+ground = scene.terrains["terrain"]
+def at(x, y, above=0.0):
+    return (x, y, float(ground.height(x, y)) + above)
+over = app.add_overlay()
+route = [at(-14 + 2.0 * k, -4 + 0.35 * k, 0.05) for k in range(12)]
+over.line(points=route, color="#4fc3f7", width=3)
+over.circle(points=route[-1], radius=12, color="#ffd23f", width=3)
+over.text("waypoint 7", points=at(route[-1][0], route[-1][1], 0.8), size=16, align="center", color="#ffd23f")
+clock = over.text("", at=(14, 28), size=16)
+over.text("autonomous, guarded", at=(-14, 28), size=16, align="right", color="#9ccc65")
+bus = app.add_read_out("bus", "28.1 V")
+heat = app.add_read_out("motor 3", "71 C")
+heat.set(state="amber")
+app.every(0.2, lambda: clock.set(text=f"sol 312   {scene.time:.1f} s"))
+app.show_dock("terrain")
+"""
+
+
+def application_overlay():
+    """Overlays and read-outs of a plug-in."""
+    with tempfile.NamedTemporaryFile("w", suffix=".py") as script:
+        script.write(OVERLAY)
+        script.flush()
+        _screenshot("application_overlay", "--after", "8", script.name)
+
+
 # A drive on the shipped field, 20 s, in steps of 0.1 s.
 RECORD = """
 import math, sys
