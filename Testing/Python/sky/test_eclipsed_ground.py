@@ -145,3 +145,33 @@ def test_maps_and_the_sky_have_the_eclipse_of_each_cell(scene, tmp_path):
         assert sky.lit_fraction == pytest.approx(float(lit[made.rows // 2, made.columns // 2]), abs=1e-4)
     parts = np.array(parts)
     assert parts.min() == 0.0 and parts.max() == 1.0 and ((parts > 0.05) & (parts < 0.95)).sum() > 20
+
+
+# NASA's table for 2017 August 21, as newspapers printed it: contacts 1 to 4 in local time, minutes without their seconds, and hours
+# from UTC to it. The longitude (east) and latitude are those of the town.
+TOWNS = {"Madras": (-121.13, 44.63, -7, "09:06", "10:19", "10:21", "11:41"),
+         "Idaho Falls": (-112.03, 43.49, -6, "10:15", "11:33", "11:34", "12:58"),
+         "Casper": (-106.31, 42.85, -6, "10:22", "11:42", "11:45", "13:09"),
+         "Lincoln": (-96.68, 40.81, -5, "11:37", "13:02", "13:04", "14:29"),
+         "Jefferson City": (-92.17, 38.58, -5, "11:46", "13:13", "13:15", "14:41"),
+         "Carbondale": (-89.22, 37.73, -5, "11:52", "13:20", "13:22", "14:47"),
+         "Paducah": (-88.60, 37.08, -5, "11:54", "13:22", "13:24", "14:49"),
+         "Nashville": (-86.78, 36.16, -5, "11:58", "13:27", "13:29", "14:54")}
+
+
+@pytest.mark.parametrize("town", TOWNS)
+def test_contacts_in_the_sky_are_those_of_the_table(scene, town):
+    """Each contact is within the minute of the table, with 20 s about it for the place in the town, the Moon's radius and UT1."""
+    longitude, latitude, zone, *contacts = TOWNS[town]
+    scene.time = scene.tdb("2017-08-21T18:00:00")
+    needs_de405(scene)
+    def left(contact, seconds):
+        hour, minute = (int(each) for each in contact.split(":"))
+        time = scene.tdb(f"2017-08-21T{hour - zone:02}:{minute:02}:00") + seconds
+        return scene.sky("sun", body="earth", site=(longitude, latitude, 0.0), geodetic=True, time=time)["sun"].lit_fraction
+
+    first, second, third, fourth = contacts
+    assert left(first, -20) == 1.0 and 0.9 < left(first, 80) < 1.0
+    assert 0.0 < left(second, -20) < 0.1 and left(second, 80) == 0.0
+    assert left(third, -20) == 0.0 and 0.0 < left(third, 80) < 0.1
+    assert 0.9 < left(fourth, -20) < 1.0 and left(fourth, 80) == 1.0
