@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <dspace/mesh/RowThreads.h>
+#include <dspace/RowThreads.h>
 
 namespace dspace {
 

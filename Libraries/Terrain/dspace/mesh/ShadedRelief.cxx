@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include <dspace/Error.h>
-#include <dspace/mesh/RowThreads.h>
+#include <dspace/RowThreads.h>
 
 namespace dspace {
 

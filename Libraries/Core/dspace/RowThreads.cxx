@@ -1,4 +1,4 @@
-#include <dspace/mesh/RowThreads.h>
+#include <dspace/RowThreads.h>
 
 #include <algorithm>
 #include <cstdint>

@@ -1,6 +1,6 @@
-// Rows of a grid, worked on by all cores.
-#ifndef DSPACE_TERRAIN_ROWTHREADS_H
-#define DSPACE_TERRAIN_ROWTHREADS_H
+// Rows of a grid, or items of a list, worked on by all cores.
+#ifndef DSPACE_ROW_THREADS_H
+#define DSPACE_ROW_THREADS_H
 
 #include <functional>
 
@@ -8,7 +8,8 @@ namespace dspace {
 
 // Calls work(first, last) for parts of the rows 0 .. rows - 1, first to last - 1, each row in one
 // part, in several threads at once. Grids of few posts, and systems without more threads, have all
-// rows in this thread. After the last part throws the first exception of a part.
+// rows in this thread. `columns` is the work of a row, in posts of a grid of heights (about 10 ns).
+// After the last part throws the first exception of a part.
 void ForRows(int rows, int columns, const std::function<void(int first, int last)>& work);
 
 } // namespace dspace

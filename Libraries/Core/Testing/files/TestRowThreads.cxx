@@ -1,5 +1,5 @@
 // Rows in several threads: each row once, and errors.
-#include <dspace/mesh/RowThreads.h>
+#include <dspace/RowThreads.h>
 
 #include <algorithm>
 #include <atomic>
