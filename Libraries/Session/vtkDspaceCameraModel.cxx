@@ -1,9 +1,11 @@
 #include "vtkDspaceCameraModel.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 #include <vector>
 
+#include <dspace/RowThreads.h>
 #include <dspace/camera/ConvertModel.h>
 #include <dspace/camera/files/CameraFiles.h>
 #include <dspace/camera/files/CameraJson.h>
@@ -41,6 +43,17 @@ void RequireComponents(vtkDoubleArray* array, int count) {
     throw dspace::Error(dspace::Error::Kind::Internal, "camera model",
                         "an array has other than " + std::to_string(count) + " components");
   }
+}
+
+constexpr int LensWork = 16; // of one point or pixel (ForRows)
+
+int RowsOf(vtkIdType count) {
+  if (count > std::numeric_limits<int>::max()) {
+    throw dspace::Error(dspace::Error::Kind::InvalidArgument, "camera model",
+                        "there are " + std::to_string(count) +
+                            " points or pixels; accepted: up to 2147483647");
+  }
+  return int(count);
 }
 
 } // namespace
@@ -134,23 +147,22 @@ std::string vtkDspaceCameraModel::Project(vtkDoubleArray* points, bool inCamera,
                                      : Eigen::Matrix3d(model.q_MC.toRotationMatrix().transpose());
     const Eigen::Vector3d p_MC = inCamera ? Eigen::Vector3d(0, 0, 0) : model.p_MC;
     const double nan = std::numeric_limits<double>::quiet_NaN();
-    for (vtkIdType i = 0; i < count; ++i, from += 3, to += 2) {
-      const Eigen::Vector3d p_C = R_CM * (Eigen::Vector3d(from) - p_MC);
-      Eigen::Vector2d pixel;
-      dspace::LensModel::Jacobian jacobian;
-      const bool seen = model.lens->Project(p_C, pixel, slope ? &jacobian : nullptr);
-      to[0] = seen ? pixel.x() : nan;
-      to[1] = seen ? pixel.y() : nan;
-      if (slope) {
-        if (seen) {
+    dspace::ForRows(RowsOf(count), LensWork, [&](int first, int last) {
+      for (int i = first; i < last; ++i) {
+        const Eigen::Vector3d p_C = R_CM * (Eigen::Vector3d(from + 3 * std::ptrdiff_t(i)) - p_MC);
+        Eigen::Vector2d pixel;
+        dspace::LensModel::Jacobian jacobian;
+        const bool seen = model.lens->Project(p_C, pixel, slope ? &jacobian : nullptr);
+        to[2 * std::ptrdiff_t(i)] = seen ? pixel.x() : nan;
+        to[2 * std::ptrdiff_t(i) + 1] = seen ? pixel.y() : nan;
+        if (slope && seen) {
           jacobian *= R_CM;
         }
-        for (int k = 0; k < 6; ++k) {
-          slope[k] = seen ? jacobian(k / 3, k % 3) : nan;
+        for (int k = 0; slope && k < 6; ++k) {
+          slope[6 * std::ptrdiff_t(i) + k] = seen ? jacobian(k / 3, k % 3) : nan;
         }
-        slope += 6;
       }
-    }
+    });
   });
 }
 
@@ -164,15 +176,18 @@ std::string vtkDspaceCameraModel::Unproject(vtkDoubleArray* pixels, bool inCamer
     rays->SetNumberOfTuples(count);
     const double* from = pixels->GetPointer(0);
     double* to = rays->GetPointer(0);
-    for (vtkIdType i = 0; i < count; ++i, from += 2, to += 6) {
-      dspace::LensRay ray;
-      const Eigen::Vector2d pixel(from);
-      if (inCamera ? model.lens->Unproject(pixel, ray) : model.Unproject(pixel, ray)) {
-        std::copy_n(ray.origin.data(), 3, to);
-        std::copy_n(ray.direction.data(), 3, to + 3);
-      } else {
-        std::fill_n(to, 6, std::numeric_limits<double>::quiet_NaN());
+    dspace::ForRows(RowsOf(count), LensWork, [&](int first, int last) {
+      for (int i = first; i < last; ++i) {
+        dspace::LensRay ray;
+        const Eigen::Vector2d pixel(from + 2 * std::ptrdiff_t(i));
+        double* const at = to + 6 * std::ptrdiff_t(i);
+        if (inCamera ? model.lens->Unproject(pixel, ray) : model.Unproject(pixel, ray)) {
+          std::copy_n(ray.origin.data(), 3, at);
+          std::copy_n(ray.direction.data(), 3, at + 3);
+        } else {
+          std::fill_n(at, 6, std::numeric_limits<double>::quiet_NaN());
+        }
       }
-    }
+    });
   });
 }

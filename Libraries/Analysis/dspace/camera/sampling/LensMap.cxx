@@ -11,9 +11,10 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
                  int height)
     : Width_(width), Height_(height), Moves_(lens.MovesPupil()),
       Pixels_(std::size_t(width) * std::size_t(height)) {
-  constexpr double Distance = 1e3;            // where the lens' scale is taken [m]
-  std::vector<std::uint32_t>* last = nullptr; // of the block that the pixel before is in
+  constexpr double Distance = 1e3;     // where the lens' scale is taken [m]
+  std::vector<Sample>* last = nullptr; // of the block that the pixel before is in
   SourceViews::Block lastBlock;
+  SourceViews::View lastView = {};
   for (std::size_t at = 0; at < this->Pixels_.size(); ++at) {
     Pixel& pixel = this->Pixels_[at];
     const Eigen::Vector2d position(x + int(at % std::size_t(width)),
@@ -29,8 +30,8 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
     if (!last || block < lastBlock || lastBlock < block) {
       last = &this->Blocks_[block];
       lastBlock = block;
+      lastView = views.ViewOf(block);
     }
-    last->push_back(std::uint32_t(at));
     const SourceViews::Face& face = views.Faces()[std::size_t(pixel.place.face)];
     Eigen::Vector2d back;
     LensModel::Jacobian jacobian;
@@ -41,11 +42,13 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
       const double area = std::abs(across.determinant());
       pixel.footprint = float(face.scale / std::sqrt(std::max(area, 1e-12)));
     }
+    last->push_back({std::uint32_t(at), float(pixel.place.x - lastView.x),
+                     float(pixel.place.y - lastView.y), pixel.footprint});
   }
 }
 
 std::size_t LensMap::Bytes() const {
-  return this->Pixels_.size() * (sizeof(Pixel) + sizeof(std::uint32_t));
+  return this->Pixels_.size() * (sizeof(Pixel) + sizeof(Sample));
 }
 
 } // namespace dspace

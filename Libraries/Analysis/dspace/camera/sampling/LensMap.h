@@ -19,6 +19,13 @@ public:
     float footprint = 1.0f;   // source pixels across a pixel of the picture
   };
 
+  // The same of a pixel that is in a block, from the first pixel of the block's view.
+  struct Sample {
+    std::uint32_t at; // in Pixels()
+    float x, y;
+    float footprint;
+  };
+
   // Pixels x to x + width - 1, y to y + height - 1 of the picture.
   LensMap(const SourceViews& views, const LensModel& lens, int x, int y, int width, int height);
 
@@ -27,9 +34,7 @@ public:
   bool MovesPupil() const { return this->Moves_; }
   const std::vector<Pixel>& Pixels() const { return this->Pixels_; } // rows from the top
   // The pixels of each block that has some.
-  const std::map<SourceViews::Block, std::vector<std::uint32_t>>& Blocks() const {
-    return this->Blocks_;
-  }
+  const std::map<SourceViews::Block, std::vector<Sample>>& Blocks() const { return this->Blocks_; }
   std::uint64_t WithoutRay() const { return this->WithoutRay_; } // pixels
   std::size_t Bytes() const;
 
@@ -38,7 +43,7 @@ private:
   int Height_;
   bool Moves_;
   std::vector<Pixel> Pixels_;
-  std::map<SourceViews::Block, std::vector<std::uint32_t>> Blocks_;
+  std::map<SourceViews::Block, std::vector<Sample>> Blocks_;
   std::uint64_t WithoutRay_ = 0;
 };
 

@@ -5,6 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include <Eigen/Core>
+
+#include <dspace/RowThreads.h>
+
 namespace dspace {
 namespace {
 
@@ -111,28 +115,45 @@ void LensTile::Follow(LensMap::Pixel& pixel, const SourceViews::View& view, cons
       std::max(this->PupilPixels_, std::hypot(place.x - first.x, place.y - first.y));
 }
 
-void LensTile::PutRadiance(std::size_t at, const LensMap::Pixel& pixel,
-                           const SourceViews::View& view, const LensPlanes& from) {
-  const int taps = std::clamp(int(std::lround(double(pixel.footprint))), 1, MostTaps);
-  double sum[3] = {0, 0, 0};
-  for (int n = 0; n < taps * taps; ++n) {
-    // Evenly over the footprint.
-    const double dx = ((n % taps + 0.5) / taps - 0.5) * (taps == 1 ? 0.0 : double(pixel.footprint));
-    const double dy = ((n / taps + 0.5) / taps - 0.5) * (taps == 1 ? 0.0 : double(pixel.footprint));
-    const double x = std::clamp(pixel.place.x + dx - view.x, 0.0, view.width - 1.001);
-    const double y = std::clamp(pixel.place.y + dy - view.y, 0.0, view.height - 1.001);
-    const std::size_t i = std::size_t(x), j = std::size_t(y);
-    const double fx = x - double(i), fy = y - double(j);
-    const float* top = &from.radiance[3 * (j * std::size_t(view.width) + i)];
-    const float* bottom = top + 3 * std::size_t(view.width);
-    for (int k = 0; k < 3; ++k) {
-      sum[k] += (1.0 - fy) * ((1.0 - fx) * double(top[k]) + fx * double(top[k + 3])) +
-                fy * ((1.0 - fx) * double(bottom[k]) + fx * double(bottom[k + 3]));
+void LensTile::PutRadiance(const LensMap::Sample& sample, const SourceViews::View& view,
+                           const LensPlanes& from) {
+  using Color = Eigen::Array4f; // the fourth is the next pixel's
+  const float right = float(view.width) - 1.001f;
+  const float bottom = float(view.height) - 1.001f;
+  const std::size_t row = 3 * std::size_t(view.width);
+  const auto at = [&](float x, float y) -> Color {
+    x = std::clamp(x, 0.0f, right);
+    y = std::clamp(y, 0.0f, bottom);
+    const auto i = std::size_t(x), j = std::size_t(y);
+    const float fx = x - float(i), fy = y - float(j);
+    const std::size_t begin = j * row + 3 * i;
+    const float* top = &from.radiance[begin];
+    if (begin + row + 7 > from.radiance.size()) { // the last one has no next pixel
+      Color sum = Color::Zero();
+      for (int k = 0; k < 3; ++k) {
+        sum[k] =
+            (1.0f - fy) * ((1.0f - fx) * top[k] + fx * top[k + 3]) +
+            fy * ((1.0f - fx) * top[row + std::size_t(k)] + fx * top[row + std::size_t(k) + 3]);
+      }
+      return sum;
     }
+    const auto load = [](const float* p) { return Color(Eigen::Map<const Color>(p)); };
+    return (1.0f - fy) * ((1.0f - fx) * load(top) + fx * load(top + 3)) +
+           fy * ((1.0f - fx) * load(top + row) + fx * load(top + row + 3));
+  };
+  const int taps = std::clamp(int(std::lround(sample.footprint)), 1, MostTaps);
+  Color sum = Color::Zero();
+  if (taps == 1) {
+    sum = at(sample.x, sample.y);
+  } else {
+    for (int n = 0; n < taps * taps; ++n) { // evenly over the footprint
+      const float dx = (float(n % taps) + 0.5f) / float(taps) - 0.5f;
+      const float dy = (float(n / taps) + 0.5f) / float(taps) - 0.5f;
+      sum += at(sample.x + dx * sample.footprint, sample.y + dy * sample.footprint);
+    }
+    sum /= float(taps * taps);
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    this->Planes_.radiance[3 * at + k] = float(sum[k] / (taps * taps));
-  }
+  std::copy_n(sum.data(), 3, &this->Planes_.radiance[3 * std::size_t(sample.at)]);
 }
 
 void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
@@ -149,7 +170,19 @@ void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
       nearest = depth > 0.0f ? std::max(nearest, 1.0 / double(depth)) : nearest;
     }
   }
-  for (const std::uint32_t at : found->second) {
+  if (this->Wishes_.radiance && !this->Map_->MovesPupil()) {
+    constexpr int Work = 2; // of one pixel (ForRows)
+    ForRows(int(found->second.size()), Work, [&](int first, int last) {
+      for (int i = first; i < last; ++i) {
+        this->PutRadiance(found->second[std::size_t(i)], view, from);
+      }
+    });
+  }
+  if (this->Wishes_.OnlyRadiance() && !this->Map_->MovesPupil()) {
+    return;
+  }
+  for (const LensMap::Sample& sample : found->second) {
+    const std::uint32_t at = sample.at;
     LensMap::Pixel pixel = this->Map_->Pixels()[at];
     if (this->Map_->MovesPupil()) {
       this->Follow(pixel, view, from, nearest);
@@ -158,8 +191,10 @@ void LensTile::Take(const SourceViews::Block& block, const LensPlanes& from) {
         std::size_t(std::clamp(int(std::lround(pixel.place.y)) - view.y, 0, view.height - 1)) *
             std::size_t(view.width) +
         std::size_t(std::clamp(int(std::lround(pixel.place.x)) - view.x, 0, view.width - 1));
-    if (this->Wishes_.radiance) {
-      this->PutRadiance(at, pixel, view, from);
+    if (this->Wishes_.radiance && this->Map_->MovesPupil()) {
+      this->PutRadiance(
+          {at, float(pixel.place.x - view.x), float(pixel.place.y - view.y), pixel.footprint}, view,
+          from);
     }
     if (this->Wishes_.depth || this->Wishes_.range) {
       const double depth = double(from.depth[source]);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <dspace/camera/sampling/LensMap.h>
@@ -31,6 +32,11 @@ struct LensPlanes {
 struct LensWishes {
   bool radiance = false, depth = false, range = false, label = false, litFraction = false,
        incidence = false, emission = false, phase = false, normal = false;
+
+  bool OnlyRadiance() const {
+    return this->radiance && !(this->depth || this->range || this->label || this->litFraction ||
+                               this->incidence || this->emission || this->phase || this->normal);
+  }
 };
 
 // Radiance is interpolated between source pixels, over the footprint of the pixel where the source
@@ -47,6 +53,7 @@ public:
   void Take(const SourceViews::Block& block, const LensPlanes& from);
 
   const LensPlanes& Planes() const { return this->Planes_; }
+  LensPlanes TakePlanes() { return std::move(this->Planes_); } // the tile then has none
   // The farthest that a moving pupil moved a pixel's place in a source view [source pixels], and
   // pixels whose place left the block that was drawn for it and stayed at its edge.
   double PupilPixels() const { return this->PupilPixels_; }
@@ -55,7 +62,7 @@ public:
 private:
   void Follow(LensMap::Pixel& pixel, const SourceViews::View& view, const LensPlanes& from,
               double nearest);
-  void PutRadiance(std::size_t at, const LensMap::Pixel& pixel, const SourceViews::View& view,
+  void PutRadiance(const LensMap::Sample& sample, const SourceViews::View& view,
                    const LensPlanes& from);
 
   const SourceViews& Views_;

@@ -156,7 +156,7 @@ LensPictures::Result LensPictures::Draw(vtkDspaceRenderContext* context,
   for (const auto& [block, pixels] : map->Blocks()) {
     tile.Take(block, *this->Get(context, scene, request, block, tile.NeedsDepth(), result));
   }
-  result.planes = tile.Planes();
+  result.planes = tile.TakePlanes();
   result.withoutRay = map->WithoutRay();
   result.halfAngle_deg = this->Views_->HalfAngle_deg();
   result.pupilShift = this->Views_->PupilShift();
