@@ -19,9 +19,13 @@ TIME = "1970:01:01 00:00:00"  # in place of the time of writing: equal images ha
 def _library():
     try:
         import OpenImageIO
-    except ImportError:
+    except ModuleNotFoundError:
         raise NotFound("OpenImageIO is not installed; accepted: Debian's package python3-openimageio",
                        "python3-openimageio") from None
+    except ImportError as error:
+        if isinstance(error.__cause__, KeyboardInterrupt):  # Ctrl-C while it was loaded
+            raise error.__cause__
+        raise
     return OpenImageIO
 
 
