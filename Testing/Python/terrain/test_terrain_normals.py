@@ -75,10 +75,11 @@ def mode(request):
 
 
 def tolerance(mode, n, sun):
-    """Of bytes: their rounding, and light to 2e-4 of 16 bits, or 1 / 254 in each of three numbers of 8 bits."""
+    """Of bytes: 0.6 by the encoding as sRGB (Direct3D's functional specification allows so much, and llvmpipe takes 156.6 to 156 on
+    some processors), and light to 2e-4 of 16 bits, or 1 / 254 in each of three numbers of 8 bits."""
     error = 2e-4 if mode == "clipmap" else np.abs(sun).sum() / 254
     light = max(0.0, n @ sun)
-    return 0.55 + max(abs(encoded(light + sign * error) - encoded(light)) for sign in (-1, 1))
+    return 0.6 + max(abs(encoded(light + sign * error) - encoded(light)) for sign in (-1, 1))
 
 
 def add_level(scene, tmp_path, mode):
