@@ -51,28 +51,38 @@ HorizonTile::HorizonTile(const HorizonMap& map, int column, int row)
     this->Nodes_.push_back(NodeAt(placement, Eigen::Vector2d::Zero()));
     this->Step_ = TileFile::Side;
   } else {
-    const auto post = [&](int i, int j) { return map.Cells().Post(column + i, row + j); };
-    const auto turn = [&](int i, int j, int step) { // of the east between two nodes
-      return std::acos(
-          std::clamp(ChartAxesAt(placement, post(i, j))
-                         .east.dot(ChartAxesAt(placement, post(i + step, j + step)).east),
-                     -1.0, 1.0));
-    };
-    for (const int step : {8, 16, 32}) {
-      if (std::max(turn(0, 0, step), turn(0, TileFile::Side - step, step)) < Straight) {
-        this->Step_ = step;
+    for (const int step : {32, 16, 8, 1}) {
+      this->Step_ = step;
+      this->Across_ = TileFile::Side / step + 1;
+      this->Nodes_.clear();
+      for (int j = 0; j <= TileFile::Side; j += step) {
+        for (int i = 0; i <= TileFile::Side; i += step) {
+          this->Nodes_.push_back(NodeAt(placement, map.Cells().Post(column + i, row + j)));
+        }
       }
-    }
-    this->Across_ = TileFile::Side / this->Step_ + 1;
-    for (int j = 0; j <= TileFile::Side; j += this->Step_) {
-      for (int i = 0; i <= TileFile::Side; i += this->Step_) {
-        this->Nodes_.push_back(NodeAt(placement, post(i, j)));
+      if (this->LargestTurn() < Straight) {
+        break;
       }
     }
   }
   this->Azimuth_.resize(this->Nodes_.size());
   this->Elevation_.resize(this->Nodes_.size());
   this->Secant_.resize(this->Nodes_.size());
+}
+
+double HorizonTile::LargestTurn() const {
+  double chord = 0.0;
+  for (std::size_t n = 0; n < this->Nodes_.size(); ++n) {
+    const Eigen::Vector3d& east = this->Nodes_[n].axes.east;
+    const std::size_t right = n + 1, below = n + std::size_t(this->Across_);
+    if (right % std::size_t(this->Across_) != 0) {
+      chord = std::max(chord, (this->Nodes_[right].axes.east - east).norm());
+    }
+    if (below < this->Nodes_.size()) {
+      chord = std::max(chord, (this->Nodes_[below].axes.east - east).norm());
+    }
+  }
+  return 2.0 * std::asin(std::min(1.0, 0.5 * chord));
 }
 
 bool HorizonTile::HasData(int cell) const {

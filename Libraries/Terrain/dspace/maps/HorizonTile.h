@@ -12,8 +12,9 @@
 
 namespace dspace {
 
-// Directions are found at nodes and are linear between them: the east turns by less than 0.01 rad
-// from node to node, or each cell is one. Angles are floats, to 1e-7 of them.
+// Directions are found at nodes and are linear between them. From each node to the next, across and
+// down, the east turns by less than 0.01 rad, or each cell is a node. Angles are floats, to 1e-7 of
+// them.
 class HorizonTile {
 public:
   // The tile whose first cell is `column`, `row` of the map, which must outlive it. Throws what
@@ -52,6 +53,7 @@ private:
     double secant, secantStep;
   };
   static Node NodeAt(const PostPlacement& placement, const Eigen::Vector2d& post);
+  double LargestTurn() const; // of the east from a node to the next, across or down [rad]
   void SeePiece(int row, const Piece& piece, float* above, float* rise, float* secant) const;
 
   int Width_;

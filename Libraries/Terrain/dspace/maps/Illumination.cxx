@@ -110,6 +110,7 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   layout.metadata["DSPACE_HEIGHT_M"] = NumberText(horizons.Height());
   layout.metadata["DSPACE_STEPS"] = std::to_string(options.sun_S.size());
   layout.metadata["DSPACE_STEP_S"] = NumberText(options.step_s);
+  layout.metadata["DSPACE_ECLIPSES"] = options.eclipser_S.empty() ? "no" : "yes";
   TileFile file(path, layout, control.replace);
   const auto steps = double(options.sun_S.size());
   const double perAzimuth = double(horizons.Azimuths()) / (2.0 * M_PI);

@@ -27,10 +27,11 @@ MapCells FindCells(const MapGround& ground, const std::optional<std::array<doubl
   const double every = spacing > 0.0 ? std::max(1.0, std::round(spacing / post))
                                      : std::min(ground.postsAPixel, MapCells::MostEvery);
   if (every > MapCells::MostEvery) {
-    Reject(ground.name, "the spacing of the cells is " + NumberText(spacing) +
-                            " map units; accepted: up to " +
-                            NumberText(MapCells::MostEvery * post) + ", " +
-                            std::to_string(MapCells::MostEvery) + " of its posts");
+    Reject(ground.name,
+           "the spacing of the cells is " + NumberText(spacing) + " map units; accepted: up to " +
+               NumberText(MapCells::MostEvery * post) + ", " + std::to_string(MapCells::MostEvery) +
+               " of its posts (of a raster of wide pixels on a body, a pixel has many "
+               "posts); take a smaller extent for fewer cells");
   }
   cells.every = int(every);
   Eigen::Vector2d low(0.0, 0.0);
