@@ -9,6 +9,7 @@
 #include <dspace/ephemeris/BodyNames.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/sky/SkyEclipse.h>
+#include <dspace/time/TimeSteps.h>
 #include <dspace/visibility/Contacts.h>
 
 namespace dspace {
@@ -135,8 +136,7 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
     out.charge = none;
     return out;
   };
-  const auto count =
-      std::max<std::int64_t>(1, std::int64_t(std::ceil((end - start) / step - 1e-9)));
+  const std::int64_t count = StepsBefore(start, end, step);
   profile.samples.reserve(std::size_t(count) + 1);
   std::vector<Sighted> seen;
   for (std::int64_t i = 0; i <= count; ++i) {

@@ -18,6 +18,7 @@
 #include <dspace/sky/KernelSet.h>
 #include <dspace/sky/SkyEclipse.h>
 #include <dspace/state/TerrainBody.h>
+#include <dspace/time/TimeSteps.h>
 
 namespace dspace::session {
 namespace {
@@ -245,11 +246,12 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
           "the number of steps", span / command.step_s(), "up to 10,000,000");
   const KernelSet& kernels = *context.scene->sky.kernels;
   const Ephemeris& ephemeris = kernels.GetEphemeris();
-  const int body = command.body().empty()
-                       ? BodyOf(kernels, horizons.GetCrs(), "file '" + command.horizon_path() + "'")
-                       : ephemeris.Names().IdOf(command.body());
+  const int body =
+      BodyFor(kernels, horizons.GetCrs(), command.body(), "file '" + command.horizon_path() + "'",
+              [&](const std::string& warning) { context.reply.add_warning(warning); });
   std::vector<double> times;
-  for (std::size_t i = 0; double(i) * command.step_s() < span; ++i) {
+  const std::int64_t steps = StepsBefore(command.start_s(), command.end_s(), command.step_s());
+  for (std::int64_t i = 0; i < steps; ++i) {
     times.push_back(command.start_s() + double(i) * command.step_s());
   }
   const PlaneAxes plane = horizons.Placement().OnBody() ? PlaneAxes() : AxesOfPlane(horizons);
