@@ -6,6 +6,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/crs/Crs.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/orientation/BodyConstants.h>
 #include <dspace/sky/KernelSet.h>
 
@@ -30,9 +31,12 @@ std::optional<int> FindBody(const KernelSet& kernels, const Crs& crs) {
     word.clear();
   }
   for (const int body : {399, 301, 499, 199, 299}) {
-    const double radius = BodyRadii(kernels.Pool(), body).x();
-    if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
-      return body;
+    try {
+      const double radius = BodyRadii(kernels.Pool(), body).x();
+      if (std::abs(crs.GetAxes().semiMajor - radius) < 1e-4 * radius) {
+        return body;
+      }
+    } catch (const Error&) { // a kernel has wrong radii of this body
     }
   }
   return std::nullopt;
@@ -46,6 +50,21 @@ int BodyOf(const KernelSet& kernels, const Crs& crs, const std::string& label) {
   return *body;
 }
 
+int BodyFor(const KernelSet& kernels, const Crs& crs, const std::string& named,
+            const std::string& label, const std::function<void(const std::string&)>& warn) {
+  if (named.empty()) {
+    return BodyOf(kernels, crs, label);
+  }
+  const BodyNames& names = kernels.GetEphemeris().Names();
+  const int body = names.IdOf(named);
+  const std::optional<int> told = FindBody(kernels, crs);
+  if (told && *told != body) {
+    warn(label + ": the command names body '" + named + "', and its CRS tells '" +
+         names.NameOf(*told) + "'; the result is for '" + named + "'");
+  }
+  return body;
+}
+
 std::optional<Eigen::Matrix3d> InertialFromFixed(const KernelSet& kernels, const Crs& crs,
                                                  double tdb) {
   const std::optional<int> body = FindBody(kernels, crs);
@@ -55,7 +74,7 @@ std::optional<Eigen::Matrix3d> InertialFromFixed(const KernelSet& kernels, const
   try {
     const Frames& frames = kernels.GetFrames();
     return frames.Rotation(frames.Table().BodyFixed(*body).name, "J2000", tdb);
-  } catch (const Error&) { // no constants of its rotation
+  } catch (const Error&) { // the kernels do not have it then
     return std::nullopt;
   }
 }

@@ -7,14 +7,15 @@ import numpy as np
 @dataclass(frozen=True)
 class Coordinates:
     """The coordinates of one place (numbers and arrays of shape (3,)), or of several (arrays of shape (...) and
-    (..., 3)). longitude to body_fixed are NaN where the terrain's CRS has no longitude and latitude."""
+    (..., 3)). longitude to body_fixed are NaN where the terrain's CRS has no longitude and latitude, and
+    inertial where it tells no known body, or how the body turns at the scene's time is not known."""
     longitude: object  # [deg] east, -180 to 180
     latitude: object  # [deg] geodetic: of the normal of the CRS's ellipsoid
     height: object  # [m] above the CRS's ellipsoid or sphere
     body_fixed: np.ndarray  # from the body's center, Z to its north pole, X to longitude 0 [m]
     map: np.ndarray  # x, y in the terrain's CRS, and height above its vertical datum [m]
     root: np.ndarray  # in the scene's root [m]
-    inertial: np.ndarray  # body_fixed in the axes of J2000 at the scene's time [m]; NaN: of no known body
+    inertial: np.ndarray  # body_fixed in the axes of J2000 at the scene's time, from the body's center [m]
 
 
 def coordinates_of(points, shape=()):

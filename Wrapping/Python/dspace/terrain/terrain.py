@@ -222,7 +222,7 @@ class Terrain(Strict):
         put(message.site, self._label(), terrain=self.name, map_x=x, map_y=y, height=height)
         if body is not None:
             message.body = text(str(body), "the body", self._label())
-        put_targets(message, targets, time, self._label())
+        put_targets(self._scene, message, targets, time, self._label())
         return sky_of(self._scene._execute(command))
 
     def site(self, x, y, height=0.0):

@@ -35,8 +35,8 @@ dspace::SkyPlace PlaceOfSite(const Context& context, const v1::SkyPlace& asked) 
   }
   const KernelSet& kernels = *context.scene->sky.kernels;
   dspace::SkyPlace out;
-  out.body = asked.body().empty() ? BodyOf(kernels, terrain.Surface().GetCrs(), label)
-                                  : kernels.GetEphemeris().Names().IdOf(asked.body());
+  out.body = BodyFor(kernels, terrain.Surface().GetCrs(), asked.body(), label,
+                     [&](const std::string& warning) { context.reply.add_warning(warning); });
   out.frame = kernels.GetFrames().Table().BodyFixed(out.body).name;
   // Up is the normal of the CRS's ellipsoid.
   out.axes = AxesAt({place.longitude_deg, place.latitude_deg, 0.0, LatitudeKind::Planetocentric},
