@@ -366,6 +366,10 @@ void vtkDspaceViewport::SetLens(LensMaker maker) {
   self.ViewChanged();
 }
 
+bool vtkDspaceViewport::HasLens() const {
+  return this->Impl->lens != nullptr;
+}
+
 void vtkDspaceViewport::Resize(int width, int height) {
   Internals& self = *this->Impl;
   dspace::CheckSize(self.Object(), width, height);

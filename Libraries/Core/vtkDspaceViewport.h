@@ -83,6 +83,7 @@ public:
   /// background of one colour. Throws what the maker throws, and Error(InvalidArgument) where a
   /// source view is larger than OpenGL draws.
   void SetLens(LensMaker maker);
+  bool HasLens() const;
   void Resize(int width, int height);
   void SetVisible(bool visible);
   /// sRGB, 0 to 1; with `top`, a vertical gradient.

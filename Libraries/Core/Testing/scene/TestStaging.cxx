@@ -47,6 +47,8 @@ TEST(Staging, WhatIsRejectedLeavesTheScene) {
   EXPECT_THROW(StageSun(scene, {0, std::nan(""), 1}), Error);
   EXPECT_TRUE(scene.Fragments().Lights().empty());
   EXPECT_THROW(StageCamera(scene, "eye", {1, 1, 1}, {1, 1, 1}), Error);
+  EXPECT_THROW(StageCamera(scene, "eye", {0, 0, 5}, {0, 0, 0}), Error); // straight down
+  EXPECT_THROW(StageCamera(scene, "", {5, 0, 0}, {0, 0, 0}), Error);
   EXPECT_TRUE(scene.VantageNames().empty());
 }
 

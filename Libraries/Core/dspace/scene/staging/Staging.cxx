@@ -43,10 +43,18 @@ void StageCamera(Scene& scene, const std::string& name, const Eigen::Vector3d& e
   camera.name = name;
   camera.mount.X_FC = LookAt(name, eye, target, Eigen::Vector3d::UnitZ());
   const std::vector<std::string> names = scene.VantageNames();
-  if (std::find(names.begin(), names.end(), vantage) == names.end()) {
+  const bool isNew = std::find(names.begin(), names.end(), vantage) == names.end();
+  if (isNew) {
     scene.CreateVantage(vantage);
   }
-  scene.SetCamera(vantage, camera);
+  try {
+    scene.SetCamera(vantage, camera);
+  } catch (...) {
+    if (isNew) {
+      scene.RemoveVantage(vantage);
+    }
+    throw;
+  }
 }
 
 } // namespace dspace

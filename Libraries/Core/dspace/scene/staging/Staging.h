@@ -23,7 +23,8 @@ void StageSun(Scene& scene, const Eigen::Vector3d& towards);
 
 // A perspective camera with a vertical field of view of 45 degrees at `eye`, which looks at
 // `target`, +Z up (root [m]). Creates the vantage where there is none, and replaces a camera of
-// this name. Throws what LookAt throws.
+// this name. Throws what LookAt (a view straight up or down is rejected), Scene::CreateVantage and
+// Scene::SetCamera throw; the scene then is as before.
 void StageCamera(Scene& scene, const std::string& name, const Eigen::Vector3d& eye,
                  const Eigen::Vector3d& target, const std::string& vantage = "main");
 
