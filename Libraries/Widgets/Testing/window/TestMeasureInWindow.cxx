@@ -9,6 +9,7 @@
 #include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/measure/ProfileChart.h>
 #include <dspace/widgets/scene/SceneTreeModel.h>
+#include <dspace/widgets/scene/SceneTreeView.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 
@@ -115,23 +116,29 @@ TEST_F(MeasureInWindow, RowsOfTheSceneArePoints) {
   ASSERT_TRUE(tree);
   tree->Refresh();
   const auto scene = tree->Model()->GetScene();
-  const auto frame = [&](const char* path) {
-    return dspace::widgets::SceneItem{scene->Frames().Find(path), 0};
+  const auto click = [&](const char* path, dspace::ObjectId object = 0) {
+    tree->Select({scene->Frames().Find(path), object}); // scrolls to it
+    const QModelIndex index = tree->Model()->IndexOf(tree->Selected());
+    const QRect place = tree->View()->visualRect(index);
+    QTest::mouseClick(tree->View()->viewport(), Qt::LeftButton, {}, place.center());
   };
   const auto before = Widget()->Points(); // of an earlier test
-  tree->Select(frame("a"));
+  click("a");
   EXPECT_EQ(Widget()->Points(), before); // no tool is used
-  tree->Select({});
   Widget()->Use("line");
-  tree->Select(frame("a"));
-  tree->Select(frame("b"));
+  click("a"); // which is selected already
+  EXPECT_EQ(Widget()->Points().size(), 1u);
+  tree->Select({scene->Frames().Find("b"), 0});
+  QTest::keyClick(tree->View(), Qt::Key_Up);
+  EXPECT_EQ(Widget()->Points().size(), 1u); // a row that the selection passes is no point
+  click("b");
   EXPECT_EQ(Widget()->Points().size(), 2u);
   ASSERT_TRUE(Settled());
   EXPECT_NEAR(Number("app.measured.length"), 5.0, 1e-12) << errors.toStdString();
   Widget()->Use("angle"); // the right angle at the crate, at (4, 1)
-  tree->Select(frame("a"));
-  tree->Select({scene->Frames().Find("b"), scene->FindObject("crate")});
-  tree->Select(frame("b"));
+  click("a");
+  click("b", scene->FindObject("crate"));
+  click("b");
   ASSERT_TRUE(Settled());
   EXPECT_NEAR(Number("app.measured"), 90.0, 1e-9);
   Widget()->Use("");

@@ -1,7 +1,6 @@
 // Plug-ins in Python: docks of rows, menu entries, keys, and what goes wrong in them.
 #include "WindowFixture.h"
 
-#include <cmath>
 #include <utility>
 
 #include <QAction>
@@ -19,7 +18,6 @@
 
 #include <dspace/widgets/panel/PanelWidget.h>
 #include <dspace/widgets/settings/Theme.h>
-#include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/PlugIns.h>
 
 using dspace::widgets::PanelWidget;
@@ -115,63 +113,7 @@ TEST_F(PlugInsTest, APlugInThatRaisesIsReportedAndTheWindowLives) {
   ASSERT_TRUE(Run("bad.close()"));
 }
 
-TEST_F(PlugInsTest, OverlaysFollowTheCameraAndReadOutsTell) {
-  ASSERT_TRUE(Run("shown = app.new_view()\n"
-                  "shown.camera.look_at(eye=(10, 0, 0), target=(0, 0, 0), up=(0, 0, 1))\n"
-                  "over = app.add_overlay(shown)\n"
-                  "spot = over.circle(points=(0, 0, 0), radius=6, color='#ff00ff', filled=True)\n"
-                  "corner = over.circle(at=(-20, -30), radius=6, color='#00ff00', filled=True)\n"
-                  "over.line(at=((10, 10), (60, 10)), color='#ffff00', width=4)\n"
-                  "word = over.text('IIII', at=(10, 60), size=40, color='#00ffff')\n"))
-      << errors.toStdString();
-  ASSERT_TRUE(Settled());
-  dspace::widgets::ViewportWidget* view = window->View(Value("shown.name"));
-  ASSERT_TRUE(view);
-  EXPECT_EQ(Value("view is shown and app.view is shown"), "True"); // the console's own name
-  const auto at = [&](int x, int y) { return view->grab().toImage().pixelColor(x, y); };
-  const auto has = [&](const QColor& color) {
-    const QImage picture = view->grab().toImage();
-    for (int y = 0; y < picture.height(); ++y) {
-      for (int x = 0; x < picture.width(); ++x) {
-        if (picture.pixelColor(x, y) == color) {
-          return true;
-        }
-      }
-    }
-    return false;
-  };
-  const QColor magenta(255, 0, 255), green(0, 255, 0);
-  EXPECT_EQ(at(view->width() / 2, view->height() / 2), magenta);
-  EXPECT_EQ(at(view->width() - 20, view->height() - 30), green);
-  EXPECT_EQ(at(35, 10), QColor(255, 255, 0));
-  EXPECT_TRUE(has(QColor(0, 255, 255)));
-  // 45 degrees are the height: a point 10 m away moves by its tangent.
-  ASSERT_TRUE(Run("spot.set(points=(0, 2, 0)); corner.remove()"));
-  const int right = int(0.2 / std::tan(M_PI / 8) * 0.5 * view->height());
-  EXPECT_NE(at(view->width() / 2, view->height() / 2), magenta);
-  EXPECT_EQ(at(view->width() / 2 + right, view->height() / 2), magenta);
-  EXPECT_FALSE(has(green));
-  ASSERT_TRUE(Run("shown.camera.look_at(eye=(-10, 0, 0), target=(0, 0, 0), up=(0, 0, 1))"));
-  ASSERT_TRUE(Settled());
-  EXPECT_EQ(at(view->width() / 2 - right, view->height() / 2), magenta);
-  for (const auto& [line, says] :
-       {std::pair("over.text('x')", "one of `at` and `points`"),
-        std::pair("over.text('x', at=(1, 2, 3))", "2 finite numbers"),
-        std::pair("over.circle(at=(1, 2), color='pinkish')", "a colour is"),
-        std::pair("over.circle(at=(1, 2), radius=0)", "more than 0"),
-        std::pair("corner.set(radius=3)", "it is removed"),
-        std::pair("over.text(7, at=(1, 2))", "a str"),
-        std::pair("spot.set(weight=3)", "an argument is")}) {
-    errors.clear();
-    EXPECT_FALSE(Run(line));
-    EXPECT_NE(errors.indexOf(says), -1) << line << ": " << errors.toStdString();
-  }
-  ASSERT_TRUE(Run("over.close()"));
-  EXPECT_FALSE(has(magenta));
-  errors.clear();
-  EXPECT_FALSE(Run("spot.set(radius=3)"));
-  EXPECT_NE(errors.indexOf("it is closed"), -1);
-
+TEST_F(PlugInsTest, ReadOutsTell) {
   ASSERT_TRUE(Run("volts = app.add_read_out('bus', '28.1 V')"));
   auto* label = window->findChild<QLabel*>("read-out bus");
   ASSERT_TRUE(label);
@@ -186,7 +128,23 @@ TEST_F(PlugInsTest, OverlaysFollowTheCameraAndReadOutsTell) {
   errors.clear();
   EXPECT_FALSE(Run("volts.set(text='1')"));
   EXPECT_NE(errors.indexOf("it is closed"), -1);
-  ASSERT_TRUE(Run("app.close_view(shown)"));
+  // One a name, texts only, and the colour of the theme that is shown.
+  ASSERT_TRUE(Run("app.set_theme('dark')\nvolts = app.add_read_out('bus')\n"
+                  "volts.set(state='red')"));
+  label = window->findChild<QLabel*>("read-out bus");
+  ASSERT_TRUE(Run("app.set_theme('light')"));
+  EXPECT_EQ(label->palette().color(QPalette::WindowText),
+            AccentOf(dspace::widgets::Accent::Error, PaletteOf(dspace::widgets::Theme::Light)));
+  ASSERT_TRUE(Run("app.set_theme('system')"));
+  for (const auto& [line, kind] : {std::pair("app.add_read_out('bus')", "AlreadyExists"),
+                                   std::pair("volts.set(text=3)", "WrongType"),
+                                   std::pair("volts.set(state='blue')", "InvalidArgument")}) {
+    EXPECT_TRUE(Run(QString("try:\n    %1\nexcept dspace.%2:\n    pass").arg(line, kind)))
+        << errors.toStdString();
+    errors.clear();
+    EXPECT_FALSE(Run(line));
+  }
+  ASSERT_TRUE(Run("volts.close()"));
 }
 
 TEST_F(PlugInsTest, TheExampleBuildsAConsoleOfThreeDocks) {

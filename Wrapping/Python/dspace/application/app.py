@@ -51,6 +51,7 @@ class App:
         self._view_defaults = {}
         self._own_cameras = {}  # that new_view() made, by view
         self._timers = set()
+        self._follow = lambda: None  # the prompt's `view` is the current one from now on
 
     # --- Views ---------------------------------------------------------------------------------
 
@@ -65,6 +66,7 @@ class App:
         client = viewport._client
         self._host.show(client.shown(), viewport.name, viewport.name if title is None else text(title, "the title"))
         self.views[viewport.name] = self._latest = viewport
+        self._follow()
         return viewport
 
     def new_view(self, camera=None, title=None, name=None):

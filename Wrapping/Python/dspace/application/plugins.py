@@ -5,6 +5,7 @@ import json
 import os
 import traceback
 
+from dspace._core import fields
 from dspace._core.fields import reject, text
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 
@@ -104,8 +105,9 @@ class ReadOut:
 
     def set(self, text=None, state=None):
         """text: the value. state: "", "amber" or "red", which colour it."""
-        words = self._text if text is None else str(text)
-        marked = self._state if state is None else state
+        about = f"read-out {self.name!r}"
+        words = self._text if text is None else fields.text(text, "the text", about)
+        marked = self._state if state is None else fields.text(state, "the state", about)
         self._asked({"do": "tell", "read_out": self._number, "text": words, "state": marked})
         self._text, self._state = words, marked
 

@@ -13,6 +13,7 @@
 #include "vtkDspaceSession.h"
 #include "vtkPythonUtil.h"
 
+#include <dspace/Error.h>
 #include <dspace/widgets/console/PythonAttendant.h>
 #include <dspace/widgets/viewport/QtContext.h>
 
@@ -84,6 +85,7 @@ import dspace
 import dspace.vtk
 from dspace.application import App
 app = App(_dspace_host)
+app._follow = lambda: _follow()
 session, scene, view = app.session, app.scene, None
 _current = None
 _console = code.InteractiveInterpreter(globals())
@@ -151,9 +153,33 @@ struct PythonInterpreter::Internals {
     try {
       function();
       Py_RETURN_NONE;
+    } catch (const Error& error) {
+      Raise(error);
+      return nullptr;
     } catch (const std::exception& error) {
       PyErr_SetString(PyExc_RuntimeError, error.what());
       return nullptr;
+    }
+  }
+  // As the class of dspace.errors that has the name of the kind.
+  static void Raise(const Error& error) {
+    static const std::map<Error::Kind, const char*> names = {
+        {Error::Kind::InvalidArgument, "InvalidArgument"},
+        {Error::Kind::NotFound, "NotFound"},
+        {Error::Kind::AlreadyExists, "AlreadyExists"},
+        {Error::Kind::Unsupported, "Unsupported"},
+        {Error::Kind::Corrupt, "Corrupt"},
+        {Error::Kind::Io, "Io"},
+        {Error::Kind::Resource, "Resource"},
+        {Error::Kind::DeadlineExceeded, "DeadlineExceeded"}};
+    const auto found = names.find(error.GetKind());
+    const Object errors(PyImport_ImportModule("dspace.errors"));
+    const Object type(errors ? PyObject_GetAttrString(
+                                   errors.get(), found == names.end() ? "Internal" : found->second)
+                             : nullptr);
+    const Object values(Py_BuildValue("(ss)", error.what(), error.GetObjectName().c_str()));
+    if (type && values) {
+      PyErr_SetObject(type.get(), values.get());
     }
   }
   static vtkObject* ShownOf(PyObject* object) {

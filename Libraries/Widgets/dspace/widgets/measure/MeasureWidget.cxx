@@ -5,6 +5,7 @@
 
 #include <QClipboard>
 #include <QFileDialog>
+#include <QGridLayout>
 #include <QGuiApplication>
 #include <QHBoxLayout>
 #include <QHeaderView>
@@ -103,19 +104,19 @@ MeasureWidget::MeasureWidget(QWidget* parent) : QWidget(parent) {
   column->addWidget(this->Table_, 1);
   this->Chart_ = new ProfileChart(this);
   column->addWidget(this->Chart_, 1);
-  auto* row = new QHBoxLayout;
+  auto* grid = new QGridLayout; // two by two: the dock may be narrow
   const auto button = [&](const QString& text, const QString& name, const QString& tip) {
     auto* made = new QPushButton(text, this);
     made->setObjectName(name);
     made->setToolTip(tip);
-    row->addWidget(made);
+    grid->addWidget(made, grid->count() / 2, grid->count() % 2);
     return made;
   };
   this->Last_ = button(tr("Remove last"), "last", tr("Removes the last point"));
   this->Clear_ = button(tr("Clear"), "clear", tr("Removes all points"));
   this->Copy_ = button(tr("Copy"), "copy", tr("Copies the results as text"));
   this->Save_ = button(tr("Save profile..."), "save", tr("Writes the profile as a table (CSV)"));
-  column->addLayout(row);
+  column->addLayout(grid);
   connect(this->Last_, &QPushButton::clicked, this, &MeasureWidget::RemoveLast);
   connect(this->Clear_, &QPushButton::clicked, this, &MeasureWidget::Clear);
   connect(this->Copy_, &QPushButton::clicked, this,

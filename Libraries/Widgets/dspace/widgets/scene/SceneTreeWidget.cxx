@@ -340,6 +340,12 @@ SceneTreeWidget::SceneTreeWidget(QWidget* parent)
                     at);
     }
   });
+  connect(self.view, &QTreeView::clicked, this, [this](const QModelIndex& index) {
+    const SceneItem at = this->Impl_->model->ItemOf(index);
+    if (at.frame != NoFrame && index.column() != SceneTreeModel::VisibleColumn) {
+      emit this->clicked(at);
+    }
+  });
   connect(self.view, &QTreeView::doubleClicked, this, [this](const QModelIndex& index) {
     const SceneItem at = this->Impl_->model->ItemOf(index);
     if (at.object != 0) { // a double click on a frame opens or closes it

@@ -57,6 +57,7 @@ public:
 
 signals:
   void selected(const dspace::widgets::SceneItem& item); // frame NoFrame: nothing
+  void clicked(const dspace::widgets::SceneItem& item);  // a row, but for its eye
   void contextAction(dspace::widgets::SceneAction action, const dspace::widgets::SceneItem& item);
   void failed(const QString& message);
 

@@ -1,6 +1,9 @@
 #include <dspace/widgets/settings/OutlinedStyle.h>
 
+#include <QApplication>
+#include <QIconEngine>
 #include <QPainter>
+#include <QPixmap>
 #include <QStyleOption>
 
 #include <dspace/widgets/settings/Theme.h>
@@ -25,6 +28,40 @@ void Outline(const QStyleOption& option, QPainter& painter, bool round) {
   }
   painter.restore();
 }
+
+// Docks keep the icons that they have asked for once: drawn in the colour of texts of the palette
+// that there is.
+class TitleMark : public QIconEngine {
+public:
+  explicit TitleMark(bool close) : Close_(close) {}
+
+  void paint(QPainter* painter, const QRect& rect, QIcon::Mode, QIcon::State) override {
+    painter->save();
+    painter->setRenderHint(QPainter::Antialiasing);
+    painter->translate(rect.topLeft());
+    painter->scale(rect.width() / 32.0, rect.height() / 32.0);
+    painter->setPen(QPen(QApplication::palette().color(QPalette::WindowText), 3.0));
+    if (this->Close_) {
+      painter->drawLine(9, 9, 23, 23);
+      painter->drawLine(23, 9, 9, 23);
+    } else { // a window before another one
+      painter->drawRect(7, 12, 13, 13);
+      painter->drawPolyline(QPolygon({{12, 12}, {12, 7}, {25, 7}, {25, 20}, {20, 20}}));
+    }
+    painter->restore();
+  }
+  QPixmap pixmap(const QSize& size, QIcon::Mode mode, QIcon::State state) override {
+    QPixmap pixmap(size);
+    pixmap.fill(Qt::transparent);
+    QPainter painter(&pixmap);
+    this->paint(&painter, QRect(QPoint(0, 0), size), mode, state);
+    return pixmap;
+  }
+  QIconEngine* clone() const override { return new TitleMark(*this); }
+
+private:
+  bool Close_;
+};
 
 } // namespace
 
@@ -67,6 +104,15 @@ void OutlinedStyle::drawComplexControl(ComplexControl control, const QStyleOptio
       Outline(*option, *painter, false);
     }
   }
+}
+
+QIcon OutlinedStyle::standardIcon(StandardPixmap icon, const QStyleOption* option,
+                                  const QWidget* widget) const {
+  const bool close = icon == SP_TitleBarCloseButton || icon == SP_DockWidgetCloseButton;
+  if (!close && icon != SP_TitleBarNormalButton) {
+    return QProxyStyle::standardIcon(icon, option, widget);
+  }
+  return QIcon(new TitleMark(close));
 }
 
 QColor OutlineOf(const QPalette& palette, bool enabled) {

@@ -624,9 +624,9 @@ bool MainWindow::IsSettled() const {
 }
 
 void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {
-  connect(tree, &SceneTreeWidget::selected, this, [this, tree](const SceneItem& item) {
+  connect(tree, &SceneTreeWidget::clicked, this, [this, tree](const SceneItem& item) {
     const auto scene = tree->Model()->GetScene();
-    if (!this->Marks_ || !scene || item.frame == NoFrame) {
+    if (!this->Marks_ || !scene) {
       return;
     }
     Eigen::Vector3d origin = Eigen::Vector3d::Zero(); // of what the row stands for
@@ -641,6 +641,13 @@ void MainWindow::AddViewParts(SceneTreeWidget* tree, TimelineWidget* timeline) {
   this->Panes_ = new ViewPanes(this);
   connect(this->Panes_, &ViewPanes::drawn, this, [this](const QString& viewport) {
     this->Interpreter_->Run(QStringLiteral("app._drawn(%1)").arg(Quoted(viewport)));
+  });
+  connect(this->Panes_, &ViewPanes::currentChanged, this, [this] {
+    QTimer::singleShot(0, this, [this] { // after what gave it the focus
+      if (this->Interpreter_) {
+        this->Interpreter_->Run(QStringLiteral("app._follow()"));
+      }
+    });
   });
   this->Selection_ = new ViewSelection(tree, this->Scenes_, this);
   this->Movies_ =

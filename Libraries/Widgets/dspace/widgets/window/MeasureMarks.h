@@ -29,11 +29,11 @@ public:
   MeasureMarks(MeasureWidget* widget, QObject* parent); // the widget must outlive it
   void Add(ViewportWidget* view, vtkObject* of, const std::string& viewport);
   // What a session replied to an event of a view: whether the widget took the point that was
-  // clicked on. A click on a point of another scene starts anew.
+  // clicked on. A point of another scene replaces those that there are.
   bool Take(vtkObject* of, const std::string& viewport, const std::string& event,
             const std::string& reply);
   // A point of a scene (root [m]) that was chosen in another way, such as the origin of an object's
-  // row: whether the widget took it. One of another scene starts anew.
+  // row: whether the widget took it. A point of another scene replaces those that there are.
   bool TakePoint(vtkObject* of, const std::string& scene, const std::array<double, 3>& point,
                  const std::string& terrain = {});
   // {"do": "measured", ...}: what Python measured in a scene (MeasureWidget::Show).

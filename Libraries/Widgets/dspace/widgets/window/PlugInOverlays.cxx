@@ -1,6 +1,7 @@
 #include <dspace/widgets/window/PlugInOverlays.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <vector>
 
@@ -20,7 +21,11 @@ namespace dspace::widgets {
 namespace {
 
 constexpr double HaloWidth = 2.5; // [pixels] beside a line or letters
-const QColor Halo(0, 0, 0, 150);
+
+// The edge beside a colour: dark, or light beside a dark one.
+QColor HaloOf(const QColor& color) {
+  return color.lightness() < 96 ? QColor(255, 255, 255, 170) : QColor(0, 0, 0, 150);
+}
 
 void Check(const QJsonObject& item) {
   const QString kind = item["kind"].toString();
@@ -56,7 +61,7 @@ std::vector<std::array<double, 3>> PointsOf(const QJsonArray& points) {
 
 void PaintText(QPainter& painter, const QJsonObject& item, const QPointF& place) {
   QFont font = painter.font();
-  font.setPixelSize(std::clamp(item["size"].toInt(13), 4, 400));
+  font.setPixelSize(int(std::lround(std::clamp(item["size"].toDouble(13.0), 4.0, 400.0))));
   const QFontMetricsF metrics(font);
   QPainterPath letters;
   const QStringList lines = item["text"].toString().split('\n');
@@ -66,8 +71,10 @@ void PaintText(QPainter& painter, const QJsonObject& item, const QPointF& place)
     const double left = align == "center" ? -0.5 * width : align == "right" ? -width : 0.0;
     letters.addText(place + QPointF(left, i * metrics.lineSpacing()), font, lines[i]);
   }
-  painter.strokePath(letters, QPen(Halo, HaloWidth, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-  painter.fillPath(letters, QColor(item["color"].toString()));
+  const QColor color(item["color"].toString());
+  painter.strokePath(letters,
+                     QPen(HaloOf(color), HaloWidth, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  painter.fillPath(letters, color);
 }
 
 void PaintLine(QPainter& painter, const QJsonObject& item, std::vector<QPointF> places) {
@@ -75,8 +82,9 @@ void PaintLine(QPainter& painter, const QJsonObject& item, std::vector<QPointF> 
   if (item["closed"].toBool() && !places.empty()) {
     places.push_back(places.front());
   }
+  const QColor own(item["color"].toString());
   for (const auto& [color, w] :
-       {std::pair(Halo, width + HaloWidth), std::pair(QColor(item["color"].toString()), width)}) {
+       {std::pair(HaloOf(own), width + HaloWidth), std::pair(own, width)}) {
     painter.setPen(QPen(color, w, Qt::SolidLine, Qt::RoundCap));
     for (std::size_t i = 1; i < places.size(); ++i) {
       if (IsPaintable(places[i - 1]) && IsPaintable(places[i])) {
@@ -91,7 +99,7 @@ void PaintCircle(QPainter& painter, const QJsonObject& item, const QPointF& plac
   const double width = std::clamp(item["width"].toDouble(2.0), 0.5, 100.0);
   const QColor color(item["color"].toString());
   painter.setBrush(Qt::NoBrush);
-  painter.setPen(QPen(Halo, width + HaloWidth));
+  painter.setPen(QPen(HaloOf(color), width + HaloWidth));
   painter.drawEllipse(place, radius, radius);
   painter.setBrush(item["filled"].toBool() ? QBrush(color) : Qt::NoBrush);
   painter.setPen(QPen(color, width));

@@ -2,6 +2,7 @@
 
 #include <QAction>
 #include <QDockWidget>
+#include <QEvent>
 #include <QKeySequence>
 #include <QLabel>
 #include <QMainWindow>
@@ -23,7 +24,9 @@ namespace {
 
 } // namespace
 
-PlugIns::PlugIns(QMainWindow* window) : QObject(window), Window_(window) {}
+PlugIns::PlugIns(QMainWindow* window) : QObject(window), Window_(window) {
+  window->installEventFilter(this);
+}
 
 PlugIns::~PlugIns() {
   for (auto& [number, dock] : this->Docks_) {
@@ -117,29 +120,50 @@ int PlugIns::AddAction(const QString& menu, const QString& text, const QString& 
 }
 
 int PlugIns::AddReadOut(const QString& name, const QString& text, const QString& tip) {
+  if (this->Window_->statusBar()->findChild<QLabel*>("read-out " + name)) {
+    throw Error(Error::Kind::AlreadyExists, "read-out '" + name.toStdString() + "'",
+                "there is one of this name already; accepted: another name, or close() first");
+  }
   auto* label = new QLabel(this->Window_);
   label->setObjectName("read-out " + name);
   label->setTextFormat(Qt::PlainText);
   label->setToolTip(tip.isEmpty() ? name : tip);
   this->Window_->statusBar()->addPermanentWidget(label);
-  this->ReadOuts_[++this->LastReadOut_] = {name, label};
+  this->ReadOuts_[++this->LastReadOut_] = {name, label, {}};
   this->Tell(this->LastReadOut_, text, {});
   return this->LastReadOut_;
 }
 
 void PlugIns::Tell(int readOut, const QString& text, const QString& state) {
-  const ReadOut& told = this->ReadOuts_.at(readOut);
-  QPalette palette; // else of the theme
-  if (state == "amber" || state == "red") {
-    palette.setColor(
-        QPalette::WindowText,
-        AccentOf(state == "red" ? Accent::Error : Accent::Warning, this->Window_->palette()));
-  } else if (!state.isEmpty()) {
+  ReadOut& told = this->ReadOuts_.at(readOut);
+  if (!state.isEmpty() && state != "amber" && state != "red") {
     Refuse("read-out '" + told.name + "'",
            "its state is \"" + state + "\"; accepted: \"\", amber, red");
   }
-  told.label->setPalette(palette);
+  told.state = state;
   told.label->setText(told.name + ' ' + text);
+  this->Paint(told);
+}
+
+void PlugIns::Paint(const ReadOut& readOut) const {
+  QPalette palette; // else of the theme
+  if (!readOut.state.isEmpty()) {
+    palette.setColor(QPalette::WindowText,
+                     AccentOf(readOut.state == "red" ? Accent::Error : Accent::Warning,
+                              this->Window_->palette()));
+  }
+  readOut.label->setPalette(palette);
+}
+
+bool PlugIns::eventFilter(QObject* watched, QEvent* event) {
+  if (event->type() == QEvent::PaletteChange) {
+    for (const auto& [number, readOut] : this->ReadOuts_) {
+      if (readOut.label) {
+        this->Paint(readOut);
+      }
+    }
+  }
+  return QObject::eventFilter(watched, event);
 }
 
 QJsonObject PlugIns::Handle(const QJsonObject& request) {

@@ -40,7 +40,8 @@ public:
   ~PlugIns() override; // with its docks
 
   // Throws Error: InvalidArgument for what is not listed above and for keys that are taken,
-  // NotFound for a panel or a read-out that is closed.
+  // NotFound for a panel or a read-out that is closed, AlreadyExists for a read-out of a name
+  // that another one has.
   QJsonObject Handle(const QJsonObject& request);
   PanelWidget* Panel(int panel) const; // null: it is closed
 
@@ -54,6 +55,7 @@ signals:
 
 private:
   int AddPanel(const QString& title, const QString& area);
+  bool eventFilter(QObject* watched, QEvent* event) override; // of the window: another theme
   int AddReadOut(const QString& name, const QString& text, const QString& tip);
   void Tell(int readOut, const QString& text, const QString& state);
   int AddAction(const QString& menu, const QString& text, const QString& key, const QString& tip);
@@ -65,7 +67,9 @@ private:
   struct ReadOut {
     QString name;
     QPointer<QLabel> label;
+    QString state;
   };
+  void Paint(const ReadOut& readOut) const; // in the colour of its state
   std::map<int, ReadOut> ReadOuts_;
   int LastReadOut_ = 0;
 };

@@ -9,7 +9,9 @@
 #include <QEvent>
 #include <QGuiApplication>
 #include <QMouseEvent>
+#include <QPainter>
 #include <QStringList>
+#include <QStyle>
 
 #include <dspace/proto/commands.pb.h>
 #include <dspace/widgets/settings/DisplayUnits.h>
@@ -36,6 +38,15 @@ QString Length(double metres, const UnitChoice& units) {
   return std::isfinite(metres)
              ? QString::number(metres * units.LengthFactor(), 'f', units.LengthDecimals(3))
              : QObject::tr("no data");
+}
+
+// Whether the map's x and y are the longitude and latitude, which are shown anyway. Latitudes of a
+// map may be planetocentric.
+bool IsDegrees(const v1::PickReply& pick) {
+  const v1::Coordinates& at = pick.coordinates();
+  return pick.has_coordinates() && std::isfinite(at.longitude_deg()) &&
+         std::abs(std::remainder(pick.map().x() - at.longitude_deg(), 360.0)) < 1e-6 &&
+         std::abs(pick.map().y() - at.latitude_deg()) < 0.5;
 }
 
 // "x 1.000  y 2.000  z 3.000 m"
@@ -104,6 +115,20 @@ bool PointerReadout::eventFilter(QObject* watched, QEvent* event) {
     this->clear();
   }
   return QLabel::eventFilter(watched, event);
+}
+
+void PointerReadout::paintEvent(QPaintEvent* event) {
+  const QFontMetrics metrics = this->fontMetrics();
+  if (metrics.horizontalAdvance(this->text()) <= this->contentsRect().width()) {
+    QLabel::paintEvent(event);
+    return;
+  }
+  QPainter painter(this);
+  this->style()->drawItemText(
+      &painter, this->contentsRect(), Qt::AlignLeft | Qt::AlignVCenter, this->palette(),
+      this->isEnabled(),
+      metrics.elidedText(this->text(), Qt::ElideRight, this->contentsRect().width()),
+      QPalette::WindowText);
 }
 
 void PointerReadout::Later() {
@@ -175,18 +200,14 @@ QString PointerReadout::TextOf(const std::string& picked, const std::string& slo
   if (pick.terrain().empty()) {
     parts << Place(pick.in_root(), units);
   } else {
-    parts << tr("map %1, %2 %3")
-                 .arg(Length(pick.map().x(), units), Length(pick.map().y(), units),
-                      units.LengthUnit());
+    if (!IsDegrees(pick)) {
+      parts << tr("map %1, %2 %3")
+                   .arg(Length(pick.map().x(), units), Length(pick.map().y(), units),
+                        units.LengthUnit());
+    }
     if (pick.has_coordinates()) {
       parts << Side(pick.coordinates().longitude_deg(), tr("E"), tr("W"), units) + "  " +
                    Side(pick.coordinates().latitude_deg(), tr("N"), tr("S"), units);
-    }
-    if (pick.has_coordinates() && (all || units.bodyFixed)) {
-      parts << tr("body-fixed %1").arg(Place(pick.coordinates().body_fixed(), units));
-    }
-    if (pick.coordinates().has_inertial() && (all || units.inertial)) {
-      parts << tr("J2000 %1").arg(Place(pick.coordinates().inertial(), units));
     }
     parts << tr("height %1 %2").arg(Length(pick.map().z(), units), units.LengthUnit());
     v1::Reply told;
@@ -196,6 +217,12 @@ QString PointerReadout::TextOf(const std::string& picked, const std::string& slo
     }
     for (int i = 0; i < std::min(MostFields, pick.field_size()); ++i) {
       parts << Shortened(pick.field(i).name()) + ' ' + QString::number(pick.field(i).value());
+    }
+    if (pick.has_coordinates() && (all || units.bodyFixed)) {
+      parts << tr("body-fixed %1").arg(Place(pick.coordinates().body_fixed(), units));
+    }
+    if (pick.coordinates().has_inertial() && (all || units.inertial)) {
+      parts << tr("J2000 %1").arg(Place(pick.coordinates().inertial(), units));
     }
   }
   return parts.join(QStringLiteral("   "));

@@ -36,6 +36,7 @@ public:
 
 protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
+  void paintEvent(QPaintEvent* event) override; // a text that is too long ends in "..."
 
 private:
   struct View {

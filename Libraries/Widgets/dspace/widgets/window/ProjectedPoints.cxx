@@ -14,6 +14,9 @@ std::vector<QPointF> ProjectedPoints(const ShownSession& session, const Viewport
                                      const std::string& scene,
                                      const std::vector<std::array<double, 3>>& points) {
   vtkDspaceViewport* shown = view.GetViewport();
+  if (shown->HasLens()) {
+    return {};
+  }
   v1::Command command;
   command.set_scene(scene);
   v1::ProjectPoints* project = command.mutable_project_points();

@@ -15,7 +15,7 @@ class ViewportWidget;
 
 // Places of points (root of `scene` [m]) in the coordinates of the view's widget [pixels of the
 // widget, from the top left], in their order. NaN: behind the camera. Empty: the view has no camera
-// now.
+// now, or it shows through a lens, which has no captions either.
 std::vector<QPointF> ProjectedPoints(const ShownSession& session, const ViewportWidget& view,
                                      const std::string& scene,
                                      const std::vector<std::array<double, 3>>& points);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <QClipboard>
 #include <QDockWidget>
@@ -176,7 +177,9 @@ bool ViewPanes::eventFilter(QObject* watched, QEvent* event) {
   if (event->type() == QEvent::FocusIn || event->type() == QEvent::MouseButtonPress) {
     for (const Pane& pane : this->Panes()) {
       if (pane.widget == watched) {
-        this->Used_ = pane.dock;
+        if (std::exchange(this->Used_, pane.dock) != pane.dock) {
+          emit this->currentChanged();
+        }
       }
     }
   }

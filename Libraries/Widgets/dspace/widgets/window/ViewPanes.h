@@ -58,6 +58,7 @@ public:
 signals:
   void drawn(const QString& viewport);
   void arranged();
+  void currentChanged(); // another view has the focus
 
 protected:
   bool eventFilter(QObject* watched, QEvent* event) override;
