@@ -74,12 +74,15 @@ def mode(request):
     return request.param
 
 
+def light_error(mode, sun):
+    return 2e-4 if mode == "clipmap" else np.abs(sun).sum() / 254
+
+
 def tolerance(mode, n, sun):
-    """Of bytes: 0.6 by the encoding as sRGB (Direct3D's functional specification allows so much, and llvmpipe takes 156.6 to 156 on
-    some processors), and light to 2e-4 of 16 bits, or 1 / 254 in each of three numbers of 8 bits."""
-    error = 2e-4 if mode == "clipmap" else np.abs(sun).sum() / 254
+    """Of bytes: their rounding, and light to 2e-4 of 16 bits, or 1 / 254 in each of three numbers of 8 bits."""
+    error = light_error(mode, sun)
     light = max(0.0, n @ sun)
-    return 0.6 + max(abs(encoded(light + sign * error) - encoded(light)) for sign in (-1, 1))
+    return 0.55 + max(abs(encoded(light + sign * error) - encoded(light)) for sign in (-1, 1))
 
 
 def add_level(scene, tmp_path, mode):
@@ -111,9 +114,9 @@ def test_lambert_in_closed_form(scene, ground, mode, tmp_path, toward, slope):
     assert layer.pixel_size == pytest.approx(4)
     for sun in SUNS:
         light_from(scene, sun)
-        image = view.image()
-        np.testing.assert_allclose(image, np.full(image.shape, encoded(max(0.0, n @ sun))),
-                                   atol=tolerance(mode, n, sun))
+        # Linear light, before it becomes bytes: llvmpipe's own encoding as sRGB is off by 0.1 of a byte on some processors.
+        light = view.radiance() * (np.pi / 1361.0)
+        np.testing.assert_allclose(light, np.full(light.shape, max(0.0, n @ sun)), atol=light_error(mode, sun) + 1e-5)
 
 
 @pytest.mark.parametrize("type, most", [(gdal.GDT_Byte, 255), (gdal.GDT_UInt16, 65535)])

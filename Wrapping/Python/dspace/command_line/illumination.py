@@ -72,7 +72,8 @@ def run(options):
                                              quantities=quantities, terrain=ground.terrain, body=options.body,
                                              eclipses=options.eclipses, replace=options.replace, **common(options))
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
-                 "step_s": options.step, "columns": made.columns, "rows": made.rows}
+                 "step_s": options.step, "eclipses": made.metadata.get("DSPACE_ECLIPSES") == "yes",
+                 "columns": made.columns, "rows": made.rows}
         write_map(out, made, found, f"{options.start} to {options.end}, every {options.step:g} s",
                   LOOKS[quantities[0]])
     if options.json:

@@ -197,5 +197,7 @@ def told(row):
 
 
 def eclipse_of(row):
-    """The words for an eclipse; empty: there is none."""
-    return f"; an eclipse leaves {100.0 * row['sun_left']:.2f} % of the Sun's disc" if row["sun_left"] < 1.0 else ""
+    """The words for an eclipse; empty: there is none, or it is night."""
+    if row["sun_left"] >= 1.0 or row.get("sun_elevation_deg", 90.0) < -1.0:
+        return ""
+    return f"; an eclipse leaves {100.0 * row['sun_left']:.6g} % of the Sun's disc"

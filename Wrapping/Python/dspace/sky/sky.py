@@ -4,7 +4,7 @@ import collections
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, file_path, flag, integer, items, put, reject, text, word
+from dspace._core.fields import array_of, file_path, flag, integer, items, put, real, reject, text, word
 from dspace._core.strict import Strict
 from dspace.errors import InvalidArgument, WrongType
 from dspace.sky.places import put_place
@@ -189,17 +189,15 @@ def sky_of(reply):
             for b in reply.sky.body}
 
 
-def put_targets(message, targets, time, about):
+def put_targets(scene, message, targets, time, about):
     """Writes the targets (names; a str: one) and the time (None: the scene's) into a SkyState."""
     names = [targets] if isinstance(targets, str) else items(targets, "the targets", about, "names of bodies")
     message.target.extend(text(name, "a target", about, "the name of a body") for name in names)
     if not names:
         reject(about, "the targets", targets, "at least one")
     if time is not None:
-        array, single = _times(time, about)
-        if not single:
-            reject(about, "the time", time, "one number", WrongType)
-        message.time_s = float(array[0])
+        message.time_s = scene.tdb(time) if isinstance(time, str) else real(
+            time, "the time", about, "a time as text (Scene.tdb), or seconds past J2000 TDB")
 
 
 # States of a body: position [m], velocity [m/s], light time [s] (arrays where several times were asked for); warnings and
@@ -218,14 +216,14 @@ class SceneSky:
     def sky(self, targets="sun", body=None, site=None, frame=None, position=None, geodetic=False, time=None):
         """Where bodies stand over a place: SkyBody by name, with light time and stellar aberration, without refraction.
 
-        The place: `body` with `site` = longitude (east), latitude [deg], height [m]; or `frame`, a frame that follows
+        The place: `body` with `site` = longitude (east), latitude [deg], height [m] (which may be left out); or `frame`, a frame that follows
         the time (add_celestial_frame) or one below it, whose axes are X east, Y north, Z up, with a `position` [m] in
-        it. geodetic: the latitude is of the ellipsoid's normal, else planetocentric. time: seconds past J2000 TDB;
-        None: the scene's."""
+        it. geodetic: the latitude is of the ellipsoid's normal, else planetocentric. time: as text
+        (Scene.tdb), or seconds past J2000 TDB; None: the scene's."""
         about = "sky"
         command = self._scene._command()
         message = command.sky_state
-        put_targets(message, targets, time, about)
+        put_targets(self._scene, message, targets, time, about)
         if (body is None) == (frame is None):
             reject(about, "body and frame", (body, frame), "one of them")
         if frame is not None:
