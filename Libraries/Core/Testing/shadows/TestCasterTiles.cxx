@@ -136,10 +136,10 @@ TEST(CasterTiles, OnlyMapsThatReachThePlaceCount) {
   std::vector<CasterTiles> tiles(1, CasterTiles(fit, fit.cascades[0]));
   tiles[0].Add(BoxHull({0, 0, 0}, {0.5, 0.5, 0.5}));
   const LightHull place = BoxHull({0, 0, -6}, {0.1, 0.1, 0.1}); // 6 m deep in the view
-  EXPECT_TRUE(MayBeShaded(fit, tiles, place));
+  EXPECT_TRUE(MayBeShaded(fit, tiles, LightPlace(fit.sun.axes, place)));
   fit.cascades[0].end = 5.0;
-  EXPECT_FALSE(MayBeShaded(fit, tiles, place));
-  EXPECT_TRUE(MayBeShaded(fit, tiles, LightHull()));
+  EXPECT_FALSE(MayBeShaded(fit, tiles, LightPlace(fit.sun.axes, place)));
+  EXPECT_TRUE(MayBeShaded(fit, tiles, LightPlace(fit.sun.axes, LightHull())));
 }
 
 TEST(CasterTiles, PartsOfAMeshLeaveWhatLiesBetweenThem) {

@@ -20,61 +20,69 @@ namespace {
 // that one does not resolve, all.
 class MapReceivers {
 public:
-  MapReceivers(const CascadeFit& fit, int k, const std::vector<LightHull>& receivers)
-      : Beyond_(fit, fit.cascades[std::size_t(k)]), All_(fit, fit.cascades[std::size_t(k)]) {
+  MapReceivers(const CascadeFit& fit, int k, const std::vector<const LightPlace*>& receivers)
+      : Axes_(fit.sun.axes), Beyond_(fit, fit.cascades[std::size_t(k)]),
+        All_(fit, fit.cascades[std::size_t(k)]) {
     const double end = fit.cascades[std::size_t(k)].end;
-    const double before = k > 0 ? fit.cascades[std::size_t(k) - 1].end : -1e300;
-    const bool further = end > before; // no map of a parallel view reaches further than the first
+    double before = k > 0 ? fit.cascades[std::size_t(k) - 1].end : -1e300;
+    if (!(end > before)) { // no map of a parallel view reaches further than the first
+      before = 1e300;
+    }
     this->Beginning_ = fit.Beginning(std::size_t(k));
-    for (const LightHull& hull : receivers) {
-      double nearest = 1e300;
-      double farthest = -1e300;
-      for (const Eigen::Vector3d& point : hull.points) {
-        nearest = std::min(nearest, -point.z() - hull.radius);
-        farthest = std::max(farthest, -point.z() + hull.radius);
-      }
-      if (hull.points.empty()) {
-        this->All_.Add(hull);
-        if (further) {
-          this->Beyond_.Add(hull);
+    for (const LightPlace* place : receivers) {
+      if (place->Anywhere()) {
+        this->All_.AddEverywhere();
+        if (before < 1e300) {
+          this->Beyond_.AddEverywhere();
         }
-      } else if (!this->All_.InParts(hull)) {
-        this->AddWithin(nearest, farthest, end, further ? before : 1e300,
-                        [&](CasterTiles& tiles) { tiles.Add(hull); });
+      } else if (!this->All_.InParts(*place)) {
+        this->AddWithin(place->GetDepths(), end, before, place->Whole());
       } else {
-        for (const Eigen::AlignedBox3f& part : *hull.parts) {
-          const Eigen::AlignedBox3d box = part.cast<double>();
-          const auto row = hull.X_VM.row(2);
-          const double middle = -row.dot(box.center().homogeneous());
-          const double half = 0.5 * row.head<3>().cwiseAbs().dot(box.sizes());
-          this->AddWithin(middle - half, middle + half, end, further ? before : 1e300,
-                          [&](CasterTiles& tiles) { tiles.AddBox(box, hull.X_VM); });
+        for (const LightPlace::Part& part : place->Parts()) {
+          this->AddWithin(part.depths, end, before, part.box);
         }
       }
     }
   }
-  bool Take(const LightHull& caster) const {
+  bool Take(const LightHull& caster) const { return this->Take(LightPlace(this->Axes_, caster)); }
+  bool Take(const LightPlace& caster) const {
     return this->Beyond_.TakeShadows(caster, 0.0) ||
            this->All_.TakeShadows(caster, this->Beginning_);
   }
   std::array<int, 4> Texels() const { return this->All_.Texels(); }
 
 private:
-  // What is from `nearest` to `farthest` before the camera [m].
-  template<class AddTo>
-  void AddWithin(double nearest, double farthest, double end, double before, const AddTo& addTo) {
-    if (nearest <= end) {
-      addTo(this->All_);
-      if (farthest > before) {
-        addTo(this->Beyond_);
+  template<class Extent>
+  void AddWithin(const LightPlace::Depths& depths, double end, double before,
+                 const Extent& extent) {
+    if (depths.nearest <= end) {
+      this->All_.Add(extent);
+      if (depths.farthest > before) {
+        this->Beyond_.Add(extent);
       }
     }
   }
 
+  Eigen::Matrix3d Axes_;
   CasterTiles Beyond_;
   CasterTiles All_;
   double Beginning_ = 0.0; // [m]
 };
+
+std::vector<LightPlace> PlacesOf(const CascadeFit& fit, const std::vector<LightHull>& hulls) {
+  std::vector<LightPlace> places;
+  places.reserve(hulls.size());
+  for (const LightHull& hull : hulls) {
+    places.emplace_back(fit.sun.axes, hull);
+  }
+  return places;
+}
+
+void Append(const std::vector<LightPlace>& places, std::vector<const LightPlace*>& list) {
+  for (const LightPlace& place : places) {
+    list.push_back(&place);
+  }
+}
 
 void AddHulls(const std::vector<LightHull>& hulls, DrawKey& key) {
   for (const LightHull& hull : hulls) {
@@ -263,7 +271,10 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
   const std::vector<LightHull> objects = this->HullsOf(seen, view, NoGround, painter);
   auto grounds = std::make_shared<std::vector<ShadowGround>>();
   std::vector<std::vector<LightHull>> groundHulls; // layer by layer
-  std::vector<LightHull> receivers = objects;
+  const std::vector<LightPlace> objectPlaces = PlacesOf(fit, objects);
+  std::vector<std::vector<LightPlace>> groundPlaces;
+  std::vector<const LightPlace*> receivers;
+  Append(objectPlaces, receivers);
   for (const DrawCustom& object : seen.Customs()) {
     const int layer = painter.GroundOf(object);
     if (layer == NoGround) {
@@ -274,17 +285,23 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
   }
   for (std::size_t ground = 0; ground < grounds->size(); ++ground) {
     groundHulls.push_back(this->HullsOf(seen, view, int(ground), painter));
-    receivers.insert(receivers.end(), groundHulls.back().begin(), groundHulls.back().end());
+    groundPlaces.push_back(PlacesOf(fit, groundHulls.back()));
+  }
+  for (const std::vector<LightPlace>& places : groundPlaces) {
+    Append(places, receivers);
   }
   if (!fit.ground) {
     grounds->clear();
   }
   std::vector<std::vector<LightHull>> others(grounds->size(), objects); // that take its shadow
+  std::vector<std::vector<const LightPlace*>> otherPlaces(grounds->size());
   for (std::size_t ground = 0; ground < others.size(); ++ground) {
+    Append(objectPlaces, otherPlaces[ground]);
     for (std::size_t other = 0; other < groundHulls.size(); ++other) {
       if (other != ground) {
         others[ground].insert(others[ground].end(), groundHulls[other].begin(),
                               groundHulls[other].end());
+        Append(groundPlaces[other], otherPlaces[ground]);
       }
     }
   }
@@ -327,11 +344,12 @@ bool ShadowMaps::Update(const Scene& scene, const DrawList& seen, DrawView& view
       coarse.size = fit.GroundSize();
       map.texel = cascade.Texel(coarse.size);
       for (int ground = 0; ground < int(grounds->size()); ++ground) {
-        const MapReceivers near(coarse, k, others[std::size_t(ground)]);
+        const MapReceivers near(coarse, k, otherPlaces[std::size_t(ground)]);
         CasterTiles casting(coarse, cascade);
         for (const LightHull& hull : this->HullsOf(list, map, ground, painter)) {
-          if (near.Take(hull)) {
-            casting.Add(hull);
+          const LightPlace place(fit.sun.axes, hull);
+          if (near.Take(place)) {
+            casting.Add(place);
           }
         }
         this->UploadTiles(casting, count * (1 + ground) + k);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace dspace {
 namespace {
@@ -10,50 +9,16 @@ namespace {
 // How far below a place, in texels, a caster may still darken the texels about it (Shadow.glsl), on
 // surfaces that the light does not graze.
 constexpr double Below = 16.0;
-constexpr double Grazing = 1e-3; // sine of the light's elevation over planes that say nothing more
 
-// The sides of the convex hull of points (A. M. Andrew 1979), moved outwards by a radius. Returns
-// how many there are: none of too many points, which a box must do for.
-template<std::size_t Most>
-int SidesOf(const std::vector<Eigen::Vector3d>& given, double radius,
-            std::array<Eigen::Vector3d, Most>& sides) {
-  std::array<Eigen::Vector2d, Most> points;
-  if (given.size() > Most) {
-    return 0;
-  }
-  const auto end = std::transform(given.begin(), given.end(), points.begin(),
-                                  [](const Eigen::Vector3d& p) { return p.head<2>(); });
-  const auto before = [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y());
-  };
-  for (auto p = points.begin(); p != end; ++p) { // there are few
-    std::rotate(std::upper_bound(points.begin(), p, *p, before), p, p + 1);
-  }
-  int count = 0;
-  for (const double turn : {1.0, -1.0}) { // the lower half, and the upper one
-    std::array<Eigen::Vector2d, Most> chain;
-    std::size_t length = 0;
-    for (auto p = points.begin(); p != end; ++p) {
-      while (length > 1) {
-        const Eigen::Vector2d a = chain[length - 1] - chain[length - 2];
-        const Eigen::Vector2d b = *p - chain[length - 1];
-        if (turn * (a.x() * b.y() - a.y() * b.x()) > 0.0) {
-          break;
-        }
-        --length;
-      }
-      chain[length++] = *p;
-    }
-    for (std::size_t i = 1; i < length && count < int(Most); ++i) {
-      const Eigen::Vector2d along = chain[i] - chain[i - 1];
-      const double distance = along.norm();
-      if (distance > 0.0) {
-        const Eigen::Vector2d out = turn / distance * Eigen::Vector2d(along.y(), -along.x());
-        sides[std::size_t(count++)] = {out.x(), out.y(), out.dot(chain[i]) + radius};
-      }
-    }
-  }
-  return count;
+// Floats of which none is below, or above, the number (to a unit in the last place or two).
+float Above(double number) {
+  const float near = float(number);
+  return near + std::abs(near) * 1.2e-7f;
+}
+
+float Beneath(double number) {
+  const float near = float(number);
+  return near - std::abs(near) * 1.2e-7f;
 }
 
 } // namespace
@@ -62,32 +27,6 @@ CasterTiles::CasterTiles(const CascadeFit& fit, const CascadeFit::Cascade& casca
     : Axes_(fit.sun.axes), Corner_(cascade.center - Eigen::Vector2d::Constant(cascade.radius)),
       Texel_(cascade.Texel(fit.size)), Tile_(2.0 * cascade.radius / Side), Size_(fit.size),
       Tops_(Side * Side, Nothing), Lows_(Side * Side, Everything) {}
-
-CasterTiles::Extent CasterTiles::ExtentOf(const LightHull& hull) const {
-  Extent extent;
-  thread_local std::vector<Eigen::Vector3d> places;
-  places.clear();
-  for (const Eigen::Vector3d& point : hull.points) {
-    places.push_back(this->Axes_ * point);
-    extent.box.extend(places.back());
-  }
-  extent.box.min().array() -= hull.radius;
-  extent.box.max().array() += hull.radius;
-  const auto along = [this](const Eigen::Vector4d& plane) -> std::optional<Eigen::Vector3d> {
-    const Eigen::Vector3d normal = this->Axes_ * plane.head<3>();
-    if (normal.z() < Grazing) {
-      return std::nullopt;
-    }
-    return Eigen::Vector3d(-plane[3], -normal.x(), -normal.y()) / normal.z();
-  };
-  extent.floor = hull.floor ? along(*hull.floor) : std::nullopt;
-  extent.ceiling = hull.ceiling ? along(*hull.ceiling) : std::nullopt;
-  const Eigen::Vector2d sizes = extent.box.sizes().head<2>();
-  if (sizes.maxCoeff() > this->Tile_) { // the box does of what fills few tiles
-    extent.sideCount = SidesOf(places, hull.radius, extent.sides);
-  }
-  return extent;
-}
 
 std::optional<std::array<int, 4>> CasterTiles::TilesOf(const Eigen::AlignedBox3d& box,
                                                        double room) const {
@@ -127,32 +66,33 @@ std::array<int, 2> CasterTiles::SpanOf(const Extent& extent, int row, int left, 
   return to > from ? std::array<int, 2>{int(from), int(to)} : std::array<int, 2>{left, left};
 }
 
+CasterTiles::Line CasterTiles::LineOf(const std::optional<Eigen::Vector3d>& plane, double bound,
+                                      int j, double room, double sign) const {
+  if (!plane) {
+    return {bound, bound, 0.0};
+  }
+  const Eigen::Vector2d middle = this->Corner_ + this->Tile_ * Eigen::Vector2d(0.5, j + 0.5);
+  return {bound,
+          (*plane)[0] + plane->tail<2>().dot(middle) +
+              sign * (0.5 * this->Tile_ + room) * plane->tail<2>().lpNorm<1>(),
+          this->Tile_ * plane->y()};
+}
+
 template<class Taken>
-bool CasterTiles::AnyTile(const Extent& extent, const std::array<int, 4>& tiles, double room,
-                          const Taken& taken) const {
-  const double highest = extent.box.max().z();
-  const double lowest = extent.box.min().z();
+bool CasterTiles::AnyRow(const Extent& extent, const std::array<int, 4>& tiles, double room,
+                         const Taken& taken) const {
   for (int j = tiles[1]; j < tiles[3]; ++j) {
-    const auto [first, end] = this->SpanOf(extent, j, tiles[0], tiles[2], room);
-    for (int i = first; i < end; ++i) {
-      const double high = extent.ceiling
-                              ? std::min(highest, this->Extreme(*extent.ceiling, i, j, room, 1.0))
-                              : highest;
-      const double low =
-          extent.floor ? std::max(lowest, this->Extreme(*extent.floor, i, j, room, -1.0)) : lowest;
-      if (taken(std::size_t(j) * Side + std::size_t(i), high, low)) {
-        return true;
-      }
+    // The box does of what fills few tiles.
+    const auto [first, end] = tiles[2] - tiles[0] > 2 || tiles[3] - tiles[1] > 2
+                                  ? this->SpanOf(extent, j, tiles[0], tiles[2], room)
+                                  : std::array<int, 2>{tiles[0], tiles[2]};
+    if (first < end && taken(std::size_t(j) * Side, first, end,
+                             this->LineOf(extent.ceiling, extent.box.max().z(), j, room, 1.0),
+                             this->LineOf(extent.floor, extent.box.min().z(), j, room, -1.0))) {
+      return true;
     }
   }
   return false;
-}
-
-double CasterTiles::Extreme(const Eigen::Vector3d& plane, int i, int j, double room,
-                            double sign) const {
-  const Eigen::Vector2d middle = this->Corner_ + this->Tile_ * Eigen::Vector2d(i + 0.5, j + 0.5);
-  return plane[0] + plane.tail<2>().dot(middle) +
-         sign * (0.5 * this->Tile_ + room) * plane.tail<2>().lpNorm<1>();
 }
 
 void CasterTiles::Add(const Extent& extent) {
@@ -161,45 +101,62 @@ void CasterTiles::Add(const Extent& extent) {
   if (!tiles) {
     return;
   }
-  this->AnyTile(extent, *tiles, room, [this](std::size_t at, double high, double low) {
-    // A float of which neither is beyond.
-    if (high > double(this->Tops_[at])) {
-      this->Tops_[at] = std::nextafter(float(high), Everything);
+  this->AnyRow(extent, *tiles, room,
+               [this](std::size_t row, int first, int end, const Line& high, const Line& low) {
+                 float* const tops = &this->Tops_[row];
+                 float* const lows = &this->Lows_[row];
+                 for (int i = first; i < end; ++i) {
+                   const float top = Above(std::min(high.bound, high.start + high.step * i));
+                   tops[i] = top > tops[i] ? top : tops[i];
+                 }
+                 for (int i = first; i < end; ++i) {
+                   const float bottom = Beneath(std::max(low.bound, low.start + low.step * i));
+                   lows[i] = bottom < lows[i] ? bottom : lows[i];
+                 }
+                 return false;
+               });
+  this->Hold(*tiles);
+}
+
+void CasterTiles::Add(const Eigen::AlignedBox3d& box) {
+  const auto tiles = this->TilesOf(box, Margin * this->Texel_);
+  if (!tiles) {
+    return;
+  }
+  const float top = Above(box.max().z());
+  const float bottom = Beneath(box.min().z());
+  for (int j = (*tiles)[1]; j < (*tiles)[3]; ++j) {
+    float* const tops = &this->Tops_[std::size_t(j) * Side];
+    float* const lows = &this->Lows_[std::size_t(j) * Side];
+    for (int i = (*tiles)[0]; i < (*tiles)[2]; ++i) {
+      tops[i] = top > tops[i] ? top : tops[i];
+      lows[i] = bottom < lows[i] ? bottom : lows[i];
     }
-    if (low < double(this->Lows_[at])) {
-      this->Lows_[at] = std::nextafter(float(low), Nothing);
-    }
-    return false;
-  });
-  const auto& [left, bottom, right, top] = *tiles;
+  }
+  this->Hold(*tiles);
+}
+
+void CasterTiles::Hold(const std::array<int, 4>& tiles) {
+  const auto& [left, bottom, right, top] = tiles;
   this->Tiles_ = {std::min(this->Tiles_[0], left), std::min(this->Tiles_[1], bottom),
                   std::max(this->Tiles_[2], right), std::max(this->Tiles_[3], top)};
 }
 
-void CasterTiles::Add(const LightHull& hull) {
-  if (hull.points.empty()) {
+void CasterTiles::Add(const LightPlace& place) {
+  if (place.Anywhere()) {
     this->AddEverywhere();
-  } else if (!this->InParts(hull)) {
-    this->Add(this->ExtentOf(hull));
+  } else if (!this->InParts(place)) {
+    this->Add(place.Whole());
   } else {
-    for (const Eigen::AlignedBox3f& part : *hull.parts) {
-      this->AddBox(part.cast<double>(), hull.X_VM);
+    for (const LightPlace::Part& part : place.Parts()) {
+      this->Add(part.box);
     }
   }
 }
 
-CasterTiles::Extent CasterTiles::ExtentOf(const Eigen::AlignedBox3d& box,
-                                          const Eigen::Matrix<double, 3, 4>& X_VB) const {
-  const Eigen::Vector3d center = this->Axes_ * (X_VB * box.center().homogeneous());
-  const Eigen::Vector3d half = (this->Axes_ * X_VB.leftCols<3>()).cwiseAbs() * (0.5 * box.sizes());
-  Extent extent;
-  extent.box = Eigen::AlignedBox3d(center - half, center + half);
-  return extent;
-}
-
 void CasterTiles::AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) {
   if (!box.isEmpty()) {
-    this->Add(this->ExtentOf(box, X_VB));
+    this->Add(LightPlace::BoxOf(this->Axes_, box, X_VB));
   }
 }
 
@@ -209,42 +166,64 @@ void CasterTiles::AddEverywhere() {
   this->Tiles_ = {0, 0, Side, Side};
 }
 
-bool CasterTiles::InParts(const LightHull& hull) const {
+bool CasterTiles::InParts(const LightPlace& place) const {
   constexpr int Few = 9; // tiles
-  if (!hull.parts || hull.parts->empty()) {
+  if (!place.HasParts()) {
     return false;
   }
-  const auto tiles = this->TilesOf(this->ExtentOf(hull).box, Margin * this->Texel_);
+  const auto tiles = this->TilesOf(place.Whole().box, Margin * this->Texel_);
   return tiles && ((*tiles)[2] - (*tiles)[0]) * ((*tiles)[3] - (*tiles)[1]) > Few;
 }
 
-bool CasterTiles::Shade(const LightHull& place) const {
-  return place.points.empty() ? !this->Empty() : this->Shade(this->ExtentOf(place));
-}
-
-bool CasterTiles::Shade(const Extent& extent) const {
-  const auto tiles = this->TilesOf(extent.box, 0.0);
+bool CasterTiles::Shade(const LightPlace& place) const {
+  if (place.Anywhere()) {
+    return !this->Empty();
+  }
+  const auto tiles = this->TilesOf(place.Whole().box, 0.0);
   if (!tiles) {
     return false;
   }
   const double room = Below * this->Texel_;
-  return this->AnyTile(extent, *tiles, 0.0, [&](std::size_t at, double, double low) {
-    return double(this->Tops_[at]) > low - room;
-  });
+  return this->AnyRow(place.Whole(), *tiles, 0.0,
+                      [&](std::size_t row, int first, int end, const Line&, const Line& low) {
+                        const float* const tops = &this->Tops_[row];
+                        bool any = false; // no branch: many at once
+                        for (int i = first; i < end; ++i) {
+                          any |= double(tops[i]) >
+                                 std::max(low.bound, low.start + low.step * i) - room;
+                        }
+                        return any;
+                      });
 }
 
-bool CasterTiles::TakeShadows(const LightHull& caster, double above) const {
-  if (caster.points.empty()) {
+bool CasterTiles::TakeShadows(const LightPlace& caster, double above) const {
+  if (caster.Anywhere()) {
     return !this->Empty();
   }
-  if (!this->TakeShadows(this->ExtentOf(caster), above)) {
+  if (!this->TakeShadows(caster.Whole(), above)) {
     return false;
   }
-  return !this->InParts(caster) ||
-         std::any_of(
-             caster.parts->begin(), caster.parts->end(), [&](const Eigen::AlignedBox3f& part) {
-               return this->TakeShadows(this->ExtentOf(part.cast<double>(), caster.X_VM), above);
-             });
+  return !this->InParts(caster) || std::any_of(caster.Parts().begin(), caster.Parts().end(),
+                                               [&](const LightPlace::Part& part) {
+                                                 return this->TakeShadows(part.box, above);
+                                               });
+}
+
+bool CasterTiles::TakeShadows(const Eigen::AlignedBox3d& box, double above) const {
+  const auto tiles = this->TilesOf(box, 0.0);
+  if (!tiles) {
+    return false;
+  }
+  const double high = box.max().z() - (above - Below * this->Texel_);
+  for (int j = (*tiles)[1]; j < (*tiles)[3]; ++j) {
+    const float* const lows = &this->Lows_[std::size_t(j) * Side];
+    for (int i = (*tiles)[0]; i < (*tiles)[2]; ++i) {
+      if (double(lows[i]) < high) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 bool CasterTiles::TakeShadows(const Extent& extent, double above) const {
@@ -253,9 +232,15 @@ bool CasterTiles::TakeShadows(const Extent& extent, double above) const {
     return false;
   }
   const double lower = above - Below * this->Texel_;
-  return this->AnyTile(extent, *tiles, 0.0, [&](std::size_t at, double high, double) {
-    return double(this->Lows_[at]) < high - lower;
-  });
+  return this->AnyRow(
+      extent, *tiles, 0.0, [&](std::size_t row, int first, int end, const Line& high, const Line&) {
+        const float* const lows = &this->Lows_[row];
+        bool any = false;
+        for (int i = first; i < end; ++i) {
+          any |= double(lows[i]) < std::min(high.bound, high.start + high.step * i) - lower;
+        }
+        return any;
+      });
 }
 
 bool CasterTiles::Empty() const {
@@ -277,11 +262,8 @@ std::array<int, 4> CasterTiles::Texels() const {
 }
 
 bool MayBeShaded(const CascadeFit& fit, const std::vector<CasterTiles>& tiles,
-                 const LightHull& place) {
-  double nearest = place.points.empty() ? 0.0 : std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& point : place.points) {
-    nearest = std::min(nearest, -point.z() - place.radius);
-  }
+                 const LightPlace& place) {
+  const double nearest = place.Anywhere() ? 0.0 : place.GetDepths().nearest;
   for (std::size_t k = 0; k < tiles.size(); ++k) {
     if (nearest <= fit.cascades[k].end && tiles[k].Shade(place)) {
       return true;

@@ -9,21 +9,9 @@
 #include <Eigen/Geometry>
 
 #include <dspace/render/shadows/CascadeFit.h>
+#include <dspace/render/shadows/LightPlace.h>
 
 namespace dspace {
-
-// Where something is, in view axes [m]: within `radius` of the hull of points (none: anywhere), and
-// above or below a plane. Planes: a unit normal, upwards, and the distance that n . p + d is 0 at.
-struct LightHull {
-  std::vector<Eigen::Vector3d> points;
-  double radius = 0.0;
-  std::optional<Eigen::Vector4d> floor;
-  std::optional<Eigen::Vector4d> ceiling;
-  // Boxes in axes of its own that hold it (CasterParts.h), and how those stand in the view; null or
-  // none: unknown.
-  const std::vector<Eigen::AlignedBox3f>* parts = nullptr;
-  Eigen::Matrix<double, 3, 4> X_VM = Eigen::Matrix<double, 3, 4>::Identity();
-};
 
 // A coarse grid over one map. Each tile knows how high things reach towards the Sun that may be in
 // it, or up to Margin texels beside it, and how low. A place above all casters of its tile is lit
@@ -39,18 +27,25 @@ public:
 
   CasterTiles(const CascadeFit& fit, const CascadeFit::Cascade& cascade);
 
-  void Add(const LightHull& hull);
+  void Add(const LightPlace& place);
+  void Add(const LightHull& hull) { this->Add(this->PlaceOf(hull)); }
+  void Add(const LightPlace::Extent& extent);
+  void Add(const Eigen::AlignedBox3d& box); // along U, V and S [m]
   // A box in its own axes, and where it stands in the view [m].
   void AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB);
   void AddEverywhere(); // of what has no known bounds
-  // Whether a hull lies in so many tiles that its parts, if it has any, are taken one by one.
-  bool InParts(const LightHull& hull) const;
+  // Whether something lies in so many tiles that its parts, if it has any, are taken one by one.
+  bool InParts(const LightPlace& place) const;
 
   // Whether casters of these tiles may throw shadows on the place.
-  bool Shade(const LightHull& place) const;
+  bool Shade(const LightPlace& place) const;
+  bool Shade(const LightHull& place) const { return this->Shade(this->PlaceOf(place)); }
   // Whether a caster may throw shadows on what is in these tiles and at least `above` [m] lower
   // along the light.
-  bool TakeShadows(const LightHull& caster, double above) const;
+  bool TakeShadows(const LightPlace& caster, double above) const;
+  bool TakeShadows(const LightHull& caster, double above) const {
+    return this->TakeShadows(this->PlaceOf(caster), above);
+  }
 
   // Row by row from the least V, each from the least U: the highest point along S, from the camera
   // [m]; Nothing where nothing is.
@@ -61,33 +56,33 @@ public:
   std::array<int, 4> Texels() const;
 
 private:
-  // Along U, V and S, and how S of its planes goes with U and V.
-  struct Extent {
-    static constexpr int Most = 8; // points with sides; a polygon has no more sides than points
-    Eigen::AlignedBox3d box;
-    std::optional<Eigen::Vector3d> floor; // S = x + y U + z V
-    std::optional<Eigen::Vector3d> ceiling;
-    std::array<Eigen::Vector3d, Most> sides; // outside where x U + y V > z for any of these
-    int sideCount = 0;                       // the first of `sides` that count
+  using Extent = LightPlace::Extent;
+  // A bound over the tiles of a row: start + step times the tile's number along U, and no more (of
+  // the highest) or less (of the lowest) than `bound`.
+  struct Line {
+    double bound;
+    double start;
+    double step;
   };
-  Extent ExtentOf(const LightHull& hull) const;
-  Extent ExtentOf(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) const;
-  bool Shade(const Extent& place) const;
+  LightPlace PlaceOf(const LightHull& hull) const { return LightPlace(this->Axes_, hull); }
+  void Hold(const std::array<int, 4>& tiles); // something is in these now
   bool TakeShadows(const Extent& caster, double above) const;
-  void Add(const Extent& extent);
+  bool TakeShadows(const Eigen::AlignedBox3d& caster, double above) const;
   // Of tiles, with `room` [m] beside the range: first U, first V, last U, last V, the last not
   // among them; none: beside the map.
   std::optional<std::array<int, 4>> TilesOf(const Eigen::AlignedBox3d& box, double room) const;
   // Of a row's tiles [left, right), those about which, with `room` [m], the sides leave something:
   // first and past the last.
   std::array<int, 2> SpanOf(const Extent& extent, int row, int left, int right, double room) const;
-  // `taken(tile, high, low)` for each tile of an extent, with the greatest and the least S over it
-  // and `room` [m] about it, until it returns true. Returns whether it did.
+  // `taken(row, first, end, high, low)` for each row of tiles of an extent, with the greatest and
+  // the least S over them and `room` [m] about them, until it returns true; `row`: the place of its
+  // first tile. Returns whether it did.
   template<class Taken>
-  bool AnyTile(const Extent& extent, const std::array<int, 4>& tiles, double room,
-               const Taken& taken) const;
-  // The least (-1) or greatest (1) S of a plane over a tile and `room` [m] about it.
-  double Extreme(const Eigen::Vector3d& plane, int i, int j, double room, double sign) const;
+  bool AnyRow(const Extent& extent, const std::array<int, 4>& tiles, double room,
+              const Taken& taken) const;
+  // The least (-1) or greatest (1) S of a plane over the tiles of row j and `room` [m] about them.
+  Line LineOf(const std::optional<Eigen::Vector3d>& plane, double bound, int j, double room,
+              double sign) const;
 
   Eigen::Matrix3d Axes_;   // rows U, V, S, from view axes
   Eigen::Vector2d Corner_; // the map's least U and V [m]
@@ -102,7 +97,7 @@ private:
 // Whether any map of the fit may hold blockers of the place. `tiles`: casters of the fit's
 // cascades.
 bool MayBeShaded(const CascadeFit& fit, const std::vector<CasterTiles>& tiles,
-                 const LightHull& place);
+                 const LightPlace& place);
 
 } // namespace dspace
 

@@ -481,7 +481,7 @@ void ClipmapDrawer::Draw(const CustomDrawing& drawing, SurfaceShaders::Features 
   // Most ground is near no caster: its program reads no maps.
   const int own = this->OwnGround(drawing);
   const Blocks shaded = Take(blocks, [&](const ClipmapBlocks::Block& block) {
-    const LightHull hull = HullOf(camera, block.bounds);
+    const LightPlace hull(view.shadows->sun.axes, HullOf(camera, block.bounds));
     bool may = MayBeShaded(*view.shadows, *view.shadowTiles, hull);
     for (int i = 0; i < int(view.shadowGrounds->size()) && !may; ++i) {
       may =
