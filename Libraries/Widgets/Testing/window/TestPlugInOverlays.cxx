@@ -1,6 +1,7 @@
 // What plug-ins in Python paint over views.
 #include "WindowFixture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -74,15 +75,21 @@ TEST_F(PlugInOverlaysTest, FollowTheCamera) {
                   "spot.set(radius=np.float32(3), filled=np.bool_(True)); word.set(size=20.5)\n"
                   "word.set(size=np.int64(20))"))
       << errors.toStdString();
-  // A view through a lens has no items at points.
+  // Through a lens: r becomes r (1 + k r²) focal lengths of 400 pixels, and the image of 400 x 300
+  // is as large as the view holds it.
   EXPECT_TRUE(has(magenta));
   ASSERT_TRUE(Run("shown.lens = dspace.CameraModel('brown', size=(400, 300), focal=(400, 400), "
-                  "center=(199.5, 149.5))"))
+                  "center=(199.5, 149.5), radial=(0.5, 0, 0))"))
       << errors.toStdString();
   ASSERT_TRUE(Settled());
+  const double scale = std::min(view->width() / 400.0, view->height() / 300.0);
+  const int moved = int(scale * 400.0 * 0.2 * (1.0 + 0.5 * 0.2 * 0.2));
+  EXPECT_EQ(at(view->width() / 2 - moved, view->height() / 2), magenta);
+  ASSERT_TRUE(Run("spot.set(points=(0, 6, 0))")); // 0.6 is beside the image
   EXPECT_FALSE(has(magenta));
   ASSERT_TRUE(Run("shown.lens = None"));
   ASSERT_TRUE(Settled());
+  ASSERT_TRUE(Run("spot.set(points=(0, 2, 0))"));
   EXPECT_TRUE(has(magenta));
   ASSERT_TRUE(Run("over.close()"));
   EXPECT_FALSE(has(magenta));

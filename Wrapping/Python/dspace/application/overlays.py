@@ -71,7 +71,7 @@ class Overlay:
 
     Places are `points`, in the root of the view's scene [m], which move with the camera and show through what hides them;
     or `at`, in pixels of the view from the top left, below 0 from the right or the bottom. color: such as "#ffd23f" or
-    "white". All have an edge that sets them off from any ground. Items at points are not painted in a view with a lens.
+    "white". All have an edge that sets them off from any ground. Items at points are seen through the lens of a view with one.
 
         overlay = app.add_overlay()
         goal = overlay.circle(points=(10, 4, 0.3), radius=8)

@@ -1,9 +1,7 @@
 #include <dspace/commands/viewports/ShownLens.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include <dspace/Checks.h>
+#include <dspace/camera/FittedImage.h>
 #include <dspace/camera/sampling/LensMap.h>
 
 namespace dspace::session {
@@ -18,13 +16,10 @@ std::shared_ptr<const ViewLens> ShowLens(const dspace::CameraModel& model, int w
     Reject(model.Label(), "it does not say for which size of image it is; accepted: a model that "
                           "does");
   }
-  const double factor = std::min(double(width) / model.width, double(height) / model.height);
-  const auto side = [factor](int of, int most) {
-    return std::clamp(int(std::lround(factor * of)), 1, most);
-  };
+  const FittedImage fitted = FitImage(model.width, model.height, width, height);
   dspace::CameraModel shown = model;
-  shown.width = side(model.width, width);
-  shown.height = side(model.height, height);
+  shown.width = fitted.width;
+  shown.height = fitted.height;
   shown.lens =
       model.lens->Scaled(double(shown.width) / model.width, double(shown.height) / model.height);
   const SourceViews views(shown, OneBlock);
@@ -49,7 +44,6 @@ std::shared_ptr<const ViewLens> ShowLens(const dspace::CameraModel& model, int w
   }
   const LensMap map(views, *shown.lens, 0, 0, shown.width, shown.height);
   lens->places.resize(std::size_t(width) * std::size_t(height));
-  const int x0 = (width - shown.width) / 2, y0 = (height - shown.height) / 2;
   for (int y = 0; y < shown.height; ++y) {
     for (int x = 0; x < shown.width; ++x) {
       const LensMap::Pixel& from =
@@ -59,7 +53,7 @@ std::shared_ptr<const ViewLens> ShowLens(const dspace::CameraModel& model, int w
       }
       const SourceViews::View& view = whole[std::size_t(from.place.face)];
       ViewLens::Place& place =
-          lens->places[std::size_t(y + y0) * std::size_t(width) + std::size_t(x + x0)];
+          lens->places[std::size_t(y + fitted.y) * std::size_t(width) + std::size_t(x + fitted.x)];
       place.x = float(from.place.x - view.x);
       place.y = float(from.place.y - view.y);
       place.source = float(from.place.face);

@@ -31,7 +31,7 @@ class ViewportWidget;
 // from the right or the bottom); "color" ("#rrggbb"), "text", "size" [pixels], "align" ("left",
 // "center", "right"), "radius" and "width" [pixels], "filled", "closed". Items lie over everything
 // in the picture. They are painted in their order, with an edge that sets them off from any ground.
-// Items at points move with the camera, and are not painted in a view through a lens. Sizes are
+// Items at points move with the camera, and are seen through the view's lens. Sizes are
 // kept within 4 to 400, radii within 0.5 to 10,000, widths within 0.5 to 100 pixels.
 class PlugInOverlays : public QObject {
   Q_OBJECT

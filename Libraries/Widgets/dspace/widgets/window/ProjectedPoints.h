@@ -14,8 +14,8 @@ class ShownSession;
 class ViewportWidget;
 
 // Places of points (root of `scene` [m]) in the coordinates of the view's widget [pixels of the
-// widget, from the top left], in their order. NaN: behind the camera. Empty: the view has no camera
-// now, or it shows through a lens, which has no captions either.
+// widget, from the top left], in their order, through the view's lens if it has one. NaN: behind
+// the camera, or beside the image of the lens. Empty: the view has no camera now.
 std::vector<QPointF> ProjectedPoints(const ShownSession& session, const ViewportWidget& view,
                                      const std::string& scene,
                                      const std::vector<std::array<double, 3>>& points);
