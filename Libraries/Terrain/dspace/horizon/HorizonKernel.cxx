@@ -8,6 +8,11 @@
 #include <dspace/horizon/ForProcessors.h>
 
 namespace dspace {
+namespace {
+
+constexpr float Rounding = 1e-6f; // of floats: more than that of a product, a sum and a quotient
+
+} // namespace
 
 // The loops over lanes have a fixed length and no branches, so that compilers vectorize them; a
 // comparison with NaN keeps what was there.
@@ -24,6 +29,24 @@ void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const 
     const float* b = heights + step.second;
     const HorizonStep g = step.ground;
     const float share = step.share;
+    // Divisions cost more than all else, and few places raise a horizon.
+    int raised = 0;
+    if (g.fall == 0.0f && g.rise == 1.0f && g.spread == 0.0f) { // a plane
+      for (int i = 0; i < HorizonLanes; ++i) {
+        const float over = a[i] + share * (b[i] - a[i]) - from[i];
+        raised |= -int(over - best[i] * g.away > -Rounding * std::abs(over));
+      }
+    } else {
+      for (int i = 0; i < HorizonLanes; ++i) {
+        const float h = a[i] + share * (b[i] - a[i]);
+        const float over = g.fall + g.rise * h - from[i];
+        const float away = g.away + g.spread * h;
+        raised |= -int(over - best[i] * away > -Rounding * std::abs(over));
+      }
+    }
+    if (!raised) {
+      continue;
+    }
     for (int i = 0; i < HorizonLanes; ++i) {
       const float h = a[i] + share * (b[i] - a[i]);
       const float t = (g.fall + g.rise * h - from[i]) / (g.away + g.spread * h);
