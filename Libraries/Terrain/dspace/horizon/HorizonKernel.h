@@ -8,7 +8,7 @@
 namespace dspace {
 
 // Posts of a row that are swept together.
-inline constexpr int HorizonLanes = 32;
+inline constexpr int HorizonLanes = 64;
 
 // The tangent of the elevation of ground of height h from height z (HorizonPath).
 struct HorizonStep {
