@@ -4,8 +4,10 @@ import json
 import numpy as np
 import pytest
 
+import dspace
 import dspace.vtk  # noqa: F401  (VTK's modules)
 from command_support import run, write_moon, write_wall
+from dspace.command_line.measure_map import frame_of
 from needs import needs_module
 from terrain_support import gdal
 
@@ -75,6 +77,10 @@ def test_illumination(capsys, moon, tmp_path):
     assert run(capsys, "illumination", "--terrain", moon, "--horizons", horizons, *span, "--out", tmp_path / "lit.tif")[0] == 0
     values = gdal.Open(str(tmp_path / "lit.tif")).ReadAsArray()
     assert values[0].mean() == pytest.approx(lit[0]["mean"], abs=1e-6)
+    # A degree of longitude is drawn as wide as it is there.
+    edges, aspect, names = frame_of(dspace.MapFile.open(tmp_path / "lit.tif"))
+    assert names == ("longitude [deg]", "latitude [deg]")
+    assert aspect == pytest.approx(1.0 / np.cos(np.radians(0.5 * (edges[2] + edges[3])))) and 9.5 < aspect < 11.0
 
 
 @pytest.mark.parametrize("arguments, text", [

@@ -127,23 +127,34 @@ def picture_of(made, title, look):
     """The first band as a PNG over map coordinates."""
     label, colours, low, high = look
     values = made.read(0)
-    x0, dx, _, y0, _, dy = made.geotransform
-    wide = 8.0
-    tall = np.clip(wide * made.rows * abs(dy) / (made.columns * abs(dx)), 3.0, 14.0) + 0.8
+    extent, aspect, names = frame_of(made)
+    ratio = aspect * (extent[3] - extent[2]) / (extent[1] - extent[0])
+    wide = np.clip(14.0 / ratio, 5.0, 8.0)
+    tall = np.clip(wide * ratio, 3.0, 14.0) + 0.8
     figure = figures()(figsize=(wide, tall), dpi=110, layout="constrained")
     axes = figure.subplots()
-    extent = (x0, x0 + dx * made.columns, y0 + dy * made.rows, y0)
     image = axes.imshow(np.ma.masked_invalid(values), extent=extent, cmap=colours, vmin=low, vmax=high, interpolation="nearest",
-                        aspect="equal")
+                        aspect=aspect)
     axes.set_facecolor("#d0d0d0")
     axes.ticklabel_format(useOffset=False)
-    axes.set_xlabel("map x")
-    axes.set_ylabel("map y")
+    axes.locator_params(axis="x", nbins=6)
+    axes.set(xlabel=names[0], ylabel=names[1])
     axes.set_title(title, fontsize=10)
     figure.colorbar(image, ax=axes, label=label, shrink=0.8)
     data = io.BytesIO()
     figure.savefig(data, format="png", metadata={"Software": None})
     return data.getvalue()
+
+
+def frame_of(made):
+    """How a map is drawn: (left, right, bottom, top), how much taller than wide a unit is, and the names of the axes. Degrees are as
+    wide as at the middle latitude, up to 89."""
+    x0, dx, _, y0, _, dy = made.geotransform
+    edges = np.array([x0, x0 + dx * made.columns, y0 + dy * made.rows, y0])
+    if made.in_degrees:
+        middle = min(abs(0.5 * (edges[2] + edges[3])), 89.0)
+        return edges, 1.0 / np.cos(np.radians(middle)), ("longitude [deg]", "latitude [deg]")
+    return edges, 1.0, ("map x", "map y")
 
 
 def told(out, made):

@@ -7,7 +7,7 @@ import tempfile
 from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import (MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, unit_of,
                                                  write)
-from dspace.command_line.measure_map import Progress, require_gdal
+from dspace.command_line.measure_map import Progress, frame_of, require_gdal
 
 np = lazy("numpy")
 
@@ -64,7 +64,7 @@ def run(options):
                  "step_s": options.step, "lon_deg": middle[0], "lat_deg": middle[1], "radius_m": options.radius,
                  "apart_m": options.apart, "most_slope_deg": options.most_slope, "order": options.order, "sites": rows}
         if out is not None and rows:
-            write(out, found, rows, lambda figure: draw(figure, made, sites, masts, ground.on_body))
+            write(out, found, rows, lambda figure: draw(figure, made, sites, masts))
     if not rows:
         raise Failed("no cell satisfies the limits; accepted: a greater --most-slope or --radius")
     if options.json:
@@ -107,22 +107,24 @@ def told(row):
             f"{row['longest_night_s'] / 3600.0:.1f} h; {row['distance_m']:.0f} m from the middle")
 
 
-def draw(figure, maps, sites, masts, on_body):
+def draw(figure, maps, sites, masts):
     """A map of the lit fraction for each mast, with its sites by rank."""
     figure.set_size_inches(1.5 + 5.0 * len(masts), 5.2)
     low = min(float(np.nanmin(made.read("lit_fraction"))) for made in maps)
     high = max(float(np.nanmax(made.read("lit_fraction"))) for made in maps)
     for k, (made, mast) in enumerate(zip(maps, masts)):
         axes = figure.add_subplot(1, len(masts), k + 1)
-        x0, dx, _, y0, _, dy = made.geotransform
-        edges = np.array([x0, x0 + dx * made.columns, y0 + dy * made.rows, y0])
-        unit, name = (1.0, "deg") if on_body else unit_of(np.abs(edges))
+        edges, aspect, names = frame_of(made)
+        unit = 1.0
+        if not made.in_degrees:
+            unit, name = unit_of(np.abs(edges))
+            names = [f"{axis} [{name}]" for axis in names]
         shown = axes.imshow(100.0 * np.ma.masked_invalid(made.read("lit_fraction")), extent=edges / unit, cmap="inferno",
-                            vmin=100.0 * low, vmax=100.0 * high, aspect="auto" if on_body else "equal")
+                            vmin=100.0 * low, vmax=100.0 * high, aspect=aspect)
         for site in (site for site in sites if site.mast == mast):
             axes.plot(site.x / unit, site.y / unit, "o", markersize=7, markerfacecolor="none", markeredgecolor="#30d0ff")
             axes.annotate(str(site.rank), (site.x / unit, site.y / unit), textcoords="offset points", xytext=(5, 5),
                           color="#30d0ff", fontsize=9)
         axes.ticklabel_format(useOffset=False)
-        axes.set(xlabel=f"map x [{name}]", ylabel=f"map y [{name}]", title=f"mast of {mast:g} m")
+        axes.set(xlabel=names[0], ylabel=names[1], title=f"mast of {mast:g} m")
     figure.colorbar(shown, ax=figure.axes, label="lit [% of the time]", shrink=0.8)

@@ -71,6 +71,12 @@ class MapFile:
         """GDAL's six numbers from (column, row) of cells' corners to map coordinates."""
         return self._dataset().GetGeoTransform()
 
+    @property
+    def in_degrees(self):
+        """Whether map coordinates are longitude and latitude [deg]."""
+        srs = self._dataset().GetSpatialRef()
+        return srs is not None and bool(srs.IsGeographic())
+
     def _dataset(self):
         try:
             from osgeo import gdal
