@@ -23,8 +23,8 @@ protected:
   static constexpr int Rows = 67;
   static constexpr int Azimuths = 12;
 
-  // Cells of `every` posts, from the post at 200, 200 on.
-  HorizonMap MapOf(double north, double step, int every) {
+  // Cells of `every` posts from the post at 200, 200 on, or to the last row.
+  HorizonMap MapOf(double north, double step, int every, bool last = false) {
     const auto terrain = OnBody(WriteDegrees(
         this->Folder_, "hills.tif", Moon, 60, 60, 20.0, north, step, [](double lon, double lat) {
           return 300.0 * std::sin(90.0 * lon) * std::cos(70.0 * lat);
@@ -33,6 +33,9 @@ protected:
     HorizonMapOptions options;
     options.cells.column = options.cells.row = 200;
     options.cells.every = every;
+    if (last) {
+      options.cells.row = 60 * ground.postsAPixel - (Rows + 1) * every;
+    }
     options.cells.columns = Columns;
     options.cells.rows = Rows;
     options.azimuths = Azimuths;
@@ -106,6 +109,19 @@ TEST_F(Tiles, CellsNearAPoleSeeTheirOwnDirection) {
     const HorizonMap map = this->MapOf(north, 0.02, 4);
     const V place = PlaceOf(map, 35, 33);
     ExpectSeen(map, Towards(place, 1.45, 1.496e11), 3e-5);
+  }
+}
+
+// Cells whose axes turn by degrees from one to 32 farther on: nodes are closer together.
+TEST_F(Tiles, CellsWhoseAxesTurnSeeTheirOwnDirection) {
+  const HorizonMap map = this->MapOf(-84.0, 0.1, 32, true);
+  const V place = PlaceOf(map, 35, 33);
+  const auto east = [&](int column, int row) {
+    return ChartAxesAt(map.Placement(), map.Cells().Post(column, row)).east;
+  };
+  ASSERT_GT((east(32, 60) - east(0, 60)).norm(), 0.02);
+  for (const double turn : {1.2, 1.45}) { // low, where horizons matter
+    ExpectSeen(map, Towards(place, turn, 1.496e11), 3e-5);
   }
 }
 
