@@ -62,7 +62,11 @@ TEST(CasterTiles, EveryPointOfACasterIsBelowTheTopOfItsTile) {
     const Eigen::Vector3d half = vector().cwiseAbs() + Eigen::Vector3d::Constant(0.01);
     const Eigen::Affine3d X_VB = Eigen::Translation3d(5.0 * vector()) *
                                  Eigen::AngleAxisd(3.0 * unit(random), vector().normalized());
-    tiles.AddBox({-half, half}, X_VB.matrix().topRows<3>());
+    const std::vector<Eigen::AlignedBox3f> box = {{-half.cast<float>(), half.cast<float>()}};
+    LightHull hull;
+    hull.parts = &box;
+    hull.X_VM = X_VB.matrix().topRows<3>();
+    tiles.Add(LightPlace(fit.sun.axes, hull).Parts().front().box);
     for (int i = 0; i < 20; ++i) {
       const Eigen::Vector3d p = X_VB * half.cwiseProduct(vector());
       EXPECT_GE(double(TopAt(tiles, fit, p)) + 1e-6, fit.sun.axes.row(2).dot(p));

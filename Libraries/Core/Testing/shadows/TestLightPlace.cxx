@@ -141,7 +141,5 @@ TEST_F(LightPlaceTest, PartsHoldTheirBoxes) {
     EXPECT_LT((part.box.max() - held.max()).norm(), 1e-5);
     EXPECT_NEAR(part.depths.nearest, nearest, 1e-5);
     EXPECT_NEAR(part.depths.farthest, farthest, 1e-5);
-    const Eigen::AlignedBox3d same = LightPlace::BoxOf(axes, box.cast<double>(), hull.X_VM);
-    EXPECT_LT((same.max() - held.max()).norm(), 1e-5);
   }
 }

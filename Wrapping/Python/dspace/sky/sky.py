@@ -216,9 +216,9 @@ class SceneSky:
     def sky(self, targets="sun", body=None, site=None, frame=None, position=None, geodetic=False, time=None):
         """Where bodies stand over a place: SkyBody by name, with light time and stellar aberration, without refraction.
 
-        The place: `body` with `site` = longitude (east), latitude [deg], height [m] (which may be left out); or `frame`, a frame that follows
-        the time (add_celestial_frame) or one below it, whose axes are X east, Y north, Z up, with a `position` [m] in
-        it. geodetic: the latitude is of the ellipsoid's normal, else planetocentric. time: as text
+        The place: `body` with `site` = longitude (east), latitude [deg] and, if it is not 0, height [m]; or `frame`, a
+        frame that follows the time (add_celestial_frame) or one below it, whose axes are X east, Y north, Z up, with a
+        `position` [m] in it. geodetic: the latitude is of the ellipsoid's normal, else planetocentric. time: as text
         (Scene.tdb), or seconds past J2000 TDB; None: the scene's."""
         about = "sky"
         command = self._scene._command()

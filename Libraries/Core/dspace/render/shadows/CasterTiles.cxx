@@ -154,12 +154,6 @@ void CasterTiles::Add(const LightPlace& place) {
   }
 }
 
-void CasterTiles::AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB) {
-  if (!box.isEmpty()) {
-    this->Add(LightPlace::BoxOf(this->Axes_, box, X_VB));
-  }
-}
-
 void CasterTiles::AddEverywhere() {
   std::fill(this->Tops_.begin(), this->Tops_.end(), Everything);
   std::fill(this->Lows_.begin(), this->Lows_.end(), Nothing);

@@ -31,9 +31,7 @@ public:
   void Add(const LightHull& hull) { this->Add(this->PlaceOf(hull)); }
   void Add(const LightPlace::Extent& extent);
   void Add(const Eigen::AlignedBox3d& box); // along U, V and S [m]
-  // A box in its own axes, and where it stands in the view [m].
-  void AddBox(const Eigen::AlignedBox3d& box, const Eigen::Matrix<double, 3, 4>& X_VB);
-  void AddEverywhere(); // of what has no known bounds
+  void AddEverywhere();                     // of what has no known bounds
   // Whether something lies in so many tiles that its parts, if it has any, are taken one by one.
   bool InParts(const LightPlace& place) const;
 

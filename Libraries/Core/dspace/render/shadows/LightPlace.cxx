@@ -77,13 +77,6 @@ LightPlace::LightPlace(const Eigen::Matrix3d& axes, const LightHull& hull)
   this->Whole_.sideCount = SidesOf(places, hull.radius, this->Whole_.sides);
 }
 
-Eigen::AlignedBox3d LightPlace::BoxOf(const Eigen::Matrix3d& axes, const Eigen::AlignedBox3d& box,
-                                      const Eigen::Matrix<double, 3, 4>& X_VB) {
-  const Eigen::Vector3d center = axes * (X_VB * box.center().homogeneous());
-  const Eigen::Vector3d half = (axes * X_VB.leftCols<3>()).cwiseAbs() * (0.5 * box.sizes());
-  return {center - half, center + half};
-}
-
 const std::vector<LightPlace::Part>& LightPlace::Parts() const {
   if (this->Parts_.empty() && this->HasParts()) {
     const Eigen::Matrix<double, 3, 4> X_LM = this->Axes_ * this->X_VM_;

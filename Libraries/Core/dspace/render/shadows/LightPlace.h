@@ -48,9 +48,6 @@ public:
 
   // `axes`: rows U, V, S, from view axes.
   LightPlace(const Eigen::Matrix3d& axes, const LightHull& hull);
-  // Along the axes of the light: a box in its own axes, and where it stands in the view.
-  static Eigen::AlignedBox3d BoxOf(const Eigen::Matrix3d& axes, const Eigen::AlignedBox3d& box,
-                                   const Eigen::Matrix<double, 3, 4>& X_VB);
 
   bool Anywhere() const { return this->Anywhere_; }
   const Extent& Whole() const { return this->Whole_; }

@@ -14,6 +14,8 @@
 #include "vtkPythonUtil.h"
 
 #include <dspace/Error.h>
+#include <dspace/messages/Convert.h>
+#include <dspace/messages/ErrorReply.h>
 #include <dspace/widgets/console/PythonAttendant.h>
 #include <dspace/widgets/viewport/QtContext.h>
 
@@ -161,25 +163,20 @@ struct PythonInterpreter::Internals {
       return nullptr;
     }
   }
-  // As the class of dspace.errors that has the name of the kind.
+  // As a reply's error is raised (dspace/_core/replies.py).
   static void Raise(const Error& error) {
-    static const std::map<Error::Kind, const char*> names = {
-        {Error::Kind::InvalidArgument, "InvalidArgument"},
-        {Error::Kind::NotFound, "NotFound"},
-        {Error::Kind::AlreadyExists, "AlreadyExists"},
-        {Error::Kind::Unsupported, "Unsupported"},
-        {Error::Kind::Corrupt, "Corrupt"},
-        {Error::Kind::Io, "Io"},
-        {Error::Kind::Resource, "Resource"},
-        {Error::Kind::DeadlineExceeded, "DeadlineExceeded"}};
-    const auto found = names.find(error.GetKind());
-    const Object errors(PyImport_ImportModule("dspace.errors"));
-    const Object type(errors ? PyObject_GetAttrString(
-                                   errors.get(), found == names.end() ? "Internal" : found->second)
-                             : nullptr);
-    const Object values(Py_BuildValue("(ss)", error.what(), error.GetObjectName().c_str()));
-    if (type && values) {
-      PyErr_SetObject(type.get(), values.get());
+    const std::string reply =
+        session::ErrorReply(session::FromKind(error.GetKind()), error.GetObjectName(), error.what())
+            .SerializeAsString();
+    const Object module(PyImport_ImportModule("dspace._core.replies"));
+    const Object decoded(module ? PyObject_CallMethod(module.get(), "to_reply", "y#", reply.data(),
+                                                      Py_ssize_t(reply.size()))
+                                : nullptr);
+    const Object message(decoded ? PyObject_GetAttrString(decoded.get(), "error") : nullptr);
+    const Object raised(
+        message ? PyObject_CallMethod(module.get(), "make_error", "O", message.get()) : nullptr);
+    if (raised) {
+      PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(raised.get())), raised.get());
     }
   }
   static vtkObject* ShownOf(PyObject* object) {

@@ -29,8 +29,8 @@ void Outline(const QStyleOption& option, QPainter& painter, bool round) {
   painter.restore();
 }
 
-// Docks keep the icons that they have asked for once: drawn in the colour of texts of the palette
-// that there is.
+// A mark of a title bar. Docks keep an icon when the theme changes, so that this one takes the
+// colour of texts each time it is painted.
 class TitleMark : public QIconEngine {
 public:
   explicit TitleMark(bool close) : Close_(close) {}

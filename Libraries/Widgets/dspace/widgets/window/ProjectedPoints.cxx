@@ -48,6 +48,9 @@ std::vector<QPointF> ProjectedPoints(const ShownSession& session, const Viewport
                                      const std::vector<std::array<double, 3>>& points) {
   vtkDspaceViewport& shown = *view.GetViewport();
   const Image image = ImageOf(session, shown);
+  if (shown.HasLens() && image.lens.empty()) {
+    return {}; // the session does not have the view now
+  }
   v1::Command command;
   command.set_scene(scene);
   v1::ProjectPoints* project = command.mutable_project_points();
