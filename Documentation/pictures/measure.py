@@ -76,7 +76,8 @@ def measure_ensemble():
     with polar_terrain() as ground, dspace.Session() as session:
         made = session.scene().illumination_ensemble(
             ground, ground.parent / "lit.tif", dspace.Variogram(5.0, 500.0), members=20, seed=1, height=2.0, azimuths=120,
-            extent=(-4000.0, 4000.0, 4000.0, -4000.0), cell_size=100.0, start="2026-09-01", end="2026-11-28", step=14400.0)
+            extent=(-4000.0, 4000.0, 4000.0, -4000.0), cell_size=100.0, terrain={"on_body": True}, start="2026-09-01", end="2026-11-28",
+            step=14400.0)
         low, middle, high = (100.0 * made.read(f"lit_fraction percentile {share}") for share in (5, 50, 95))
     figure = Figure(figsize=(9.4, 3.7), dpi=100, layout="constrained")
     for axes, values, title, colors in zip(figure.subplots(1, 2), (middle, high - low), ("median of 20 terrains", "95th less 5th percentile"),

@@ -2,12 +2,16 @@
 import json
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 import numpy as np
 
 import dspace
 from pictures.paths import DATA, IMAGES
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "Examples" / "polar_site"))
+import polar_ground  # noqa: E402
 
 SHADES = ("#3b0f70", "#2c56c8", "#1fa5c9", "#3fbf5f", "#e6d44a", "#e5832f", "#c03a2b", "#a98a84", "#f5f2f0")
 
@@ -154,6 +158,25 @@ def far_shadows():
         view = scene.add_viewport((960, 540), "eye", samples=2)
         view.set(shadows=True, fill=0.02)
         view.save(IMAGES / "far_shadows.png")
+
+
+def pole():
+    """Generated ground in a polar stereographic projection on the Moon's sphere, the Sun 2 degrees above the horizon of the pole."""
+    with dspace.Session() as session, tempfile.TemporaryDirectory() as folder:
+        scene = session.scene()
+        path = pathlib.Path(folder) / "ground.tif"
+        polar_ground.write(path, 2000, 20.0)
+        terrain = scene.add_terrain(path, on_body=True, color=(0.62, 0.6, 0.58), vertical_scale=1)
+        terrain.set_style(grid={"interval": 0.1, "color": (0.35, 0.65, 1.0), "opacity": 0.9},
+                          contours={"interval": 200.0, "color": (0.9, 0.65, 0.2), "opacity": 0.7})
+        target = terrain.from_map([[1500.0, 1500.0, 0.0]])[0]
+        eye = terrain.from_map([[-9000.0, -13000.0, 9500.0]])[0]
+        up = eye / np.linalg.norm(eye)
+        scene.sun.set(azimuth_deg=100, elevation_deg=2.5, terrain=terrain, at=(0.0, 0.0), irradiance=5 * 1361)
+        scene.add_camera("eye", eye=eye, target=target, up=up, fov_deg=48)
+        view = scene.add_viewport((960, 540), "eye", samples=2)
+        view.set(shadows=True, fill=0.05)
+        view.save(IMAGES / "terrain_pole.png")
 
 
 def whole_mars():

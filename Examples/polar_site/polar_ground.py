@@ -49,19 +49,14 @@ def crater(z, spacing, centre, diameter, age):
 
 
 def write(path, side=2000, spacing=20.0, seed=7):
-    """Writes the terrain as a GeoTIFF in a polar projection. Returns its heights (side, side).
-
-    Terrain in a projection lies on a plane: here it is the plane that touches the sphere at the pole. The heights are those over
-    it: they fall by d^2 / 2R with the distance d from the pole (1e-5 of itself at 20 km), so that what is far away hides behind the
-    Moon's curvature. What is vertical is so at the pole: d / R elsewhere, 0.03 degrees a kilometre."""
+    """Writes the terrain as a GeoTIFF in a polar stereographic projection, heights above the Moon's sphere. Returns its heights
+    (side, side)."""
     from osgeo import gdal
     gdal.UseExceptions()
     z = heights(side, spacing, seed)
-    axis = (np.arange(side) + 0.5 - 0.5 * side) * spacing
-    z -= ((axis[:, None] ** 2 + axis[None, :] ** 2) / (2.0 * RADIUS)).astype(np.float32)
     data = gdal.GetDriverByName("GTiff").Create(str(path), side, side, 1, gdal.GDT_Float32, ["COMPRESS=DEFLATE", "PREDICTOR=3"])
     data.SetGeoTransform((-0.5 * side * spacing, spacing, 0, 0.5 * side * spacing, 0, -spacing))
     data.SetProjection(POLAR)
-    data.SetMetadataItem("VERTICAL_DATUM", "relative")
+    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
     data.GetRasterBand(1).WriteArray(z)
     return z

@@ -40,8 +40,8 @@ def parse():
 
 
 def best_site(z, spacing):
-    """The highest post within 1.5 km of the pole, where the plane's vertical is the Moon's within 0.05 degrees: map x, y [m]."""
-    middle, reach = z.shape[0] // 2, int(1500.0 / spacing)
+    """The highest post within 10 km of the pole: map x, y [m]."""
+    middle, reach = z.shape[0] // 2, int(10_000.0 / spacing)
     inner = z[middle - reach:middle + reach, middle - reach:middle + reach]
     row, column = np.unravel_index(np.argmax(inner), inner.shape)
     return (column - reach + 0.5) * spacing, (reach - row - 0.5) * spacing
@@ -87,7 +87,7 @@ def main():
     with dspace.Session() as session:
         scene = session.scene()
         start, end = scene.tdb([options.start, options.end])
-        terrain = scene.add_terrain(ground_file, name="ground")
+        terrain = scene.add_terrain(ground_file, name="ground", on_body=True)
         x, y = best_site(z, spacing)
         site = terrain.site(x, y, MAST)
         horizon = scene.horizon(site, 1440)
@@ -95,8 +95,7 @@ def main():
         print(f"site {float(where.latitude[0]):.4f} N, {float(where.longitude[0]):.4f} E")
 
         section = report.section("Site and horizon")
-        section.text("The ground is generated, over the plane that touches the Moon at the pole: its heights have the fall of the sphere. "
-                     "The site's own vertical departs from the plane's by up to 0.05 degrees.")
+        section.text("The ground is generated. It stands on the Moon's sphere, whose curvature hides what is far away.")
         section.values({"latitude [deg]": float(where.latitude[0]), "longitude [deg]": float(where.longitude[0]), "mast [m]": MAST,
                         "least elevation of the horizon [deg]": horizon.elevation_deg.min(),
                         "greatest elevation [deg]": horizon.elevation_deg.max()})

@@ -30,12 +30,12 @@ def between_posts(z, c, r):
     return np.where(u >= v, nw + u * (ne - nw) + v * (se - ne), nw + v * (sw - nw) + u * (se - sw))
 
 
-def points_of(depth, eye, target, fov_deg):
-    """Root coordinates of what a camera (up: Z) hit, and metres there a pixel; NaN where nothing."""
+def points_of(depth, eye, target, fov_deg, up=(0, 0, 1)):
+    """Root coordinates of what a camera hit, and metres there a pixel; NaN where nothing."""
     height, width = depth.shape
     eye, target = np.asarray(eye, float), np.asarray(target, float)
     forward = (target - eye) / np.linalg.norm(target - eye)
-    right = np.cross(forward, (0, 0, 1))
+    right = np.cross(forward, up)
     right /= np.linalg.norm(right)
     down = np.cross(forward, right)
     pixel = 2 * np.tan(np.radians(fov_deg) / 2) / height

@@ -1,13 +1,16 @@
 // What changes at a pole, where longitude jumps within a triangle: it is found at each pixel.
 #if defined(DSPACE_POLE) && defined(DSPACE_MIXED)
-in vec3 poleDirection; // Z out of the pole
+in vec3 poleDirection; // in the chart's axes: Z out of the pole
 uniform float poleSign; // -1 at the south pole
+uniform vec2 poleTurn; // cosine and sine of the longitude of the chart's X
 
 // Longitude from -180 to 180, latitude; and longitude from 0 to 360, which does not jump where the
 // first does.
 vec3 degreesAt()
 {
-  float longitude = degrees(atan(poleSign * poleDirection.y, poleDirection.x));
+  vec2 aside = vec2(poleDirection.x, poleSign * poleDirection.y);
+  float longitude = degrees(atan(poleTurn.y * aside.x + poleTurn.x * aside.y,
+    poleTurn.x * aside.x - poleTurn.y * aside.y));
   float latitude = poleSign * degrees(atan(poleDirection.z, length(poleDirection.xy)));
   return vec3(longitude, latitude, longitude < 0.0 ? longitude + 360.0 : longitude);
 }

@@ -168,7 +168,8 @@ def test_a_lit_panel_in_an_eclipse(capsys, moon):
 
 
 def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
-    """Near the south pole of a polar map the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it."""
+    """Near the south pole of a polar map the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it; on the body,
+    clockwise from true north, that longitude less the site's."""
     path = tmp_path / "pole.tif"
     data = gdal.GetDriverByName("GTiff").Create(str(path), 100, 100, 1, gdal.GDT_Float32)
     data.SetGeoTransform((-1000, 20, 0, 1000, 0, -20))
@@ -180,11 +181,14 @@ def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
     data = None
     time = "2026-11-24T12:00"
     longitude, _ = below_the_sun(time)
-    for site in ("50,-89.99", "-120,-89.98", "0,-90"):
-        code, out, err = run(capsys, "lit", "--terrain", path, "--site", site, "--time", time, "--json")
-        assert code == 0, err
-        off = (json.loads(out)["sun_azimuth_deg"] - longitude + 180.0) % 360.0 - 180.0
-        assert off == pytest.approx(0.0, abs=0.05), site
+    for east, south in ((50, -89.99), (-120, -89.98), (0, -90)):
+        for plane in ((), ("--plane",)):
+            code, out, err = run(capsys, "lit", "--terrain", path, "--site", f"{east},{south}", "--time", time, "--json", *plane)
+            assert code == 0, err
+            found = json.loads(out)
+            assert found["on_body"] == (not plane)
+            off = (found["sun_azimuth_deg"] - longitude + (0.0 if plane else east) + 180.0) % 360.0 - 180.0
+            assert off == pytest.approx(0.0, abs=0.05), (east, south, plane)
 
 
 def test_plots(capsys, wall, tmp_path):

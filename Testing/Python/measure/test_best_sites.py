@@ -7,6 +7,7 @@ import pytest
 
 import dspace
 from command_support import R, write_moon
+from dspace.measure.best_sites import extent_around
 from needs import needs_module
 from terrain_support import gdal, write_raster
 
@@ -143,6 +144,39 @@ def test_on_a_body_distances_run_around_it(scene, tmp_path):
     assert len(east) == 1
     across = 0.1 * math.pi / 180.0 * R * math.cos(math.radians(80.625))
     assert east[0].slope_deg == pytest.approx(math.degrees(math.atan(800.0 / across)), rel=1e-5)
+
+
+@pytest.mark.parametrize("projection, transform, center", [
+    ("+proj=stere +lat_0=-90 +lon_0=25", (-8000, 200, 0, 9000, 0, -200), (1200.0, -900.0)),
+    ("+proj=stere +lat_0=90 +k=0.9", (200000, 200, 0, -150000, 0, -200), (208000.0, -158000.0)),
+    ("+proj=eqc +lat_ts=60", (100000, 200, 0, 1800000, 0, -200), (108000.0, 1791000.0)),
+    ("+proj=longlat", (10, 0.01, 0, 60, 0, -0.01), (10.4, 59.6))], ids=("south", "north", "equidistant", "degrees"))
+def test_the_extent_of_a_circle_on_a_body(scene, tmp_path, projection, transform, center):
+    """Against map places at the radius from the middle, by PROJ."""
+    osr = needs_module("osgeo.osr", "python3-gdal")
+    srs = osr.SpatialReference()
+    srs.ImportFromProj4(f"{projection} +R={R} +no_defs")
+    path = write_raster(tmp_path / "body.tif", np.zeros((80, 80), np.float32))
+    data = gdal.Open(str(path), gdal.GA_Update)
+    data.SetProjection(srs.ExportToWkt())
+    data.SetGeoTransform(transform)
+    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
+    data = None
+    terrain = scene.add_terrain(path, on_body=True)
+    radius = 3000.0
+    left, top, right, bottom = extent_around(terrain, center, radius)
+    degrees = srs.CloneGeogCS()
+    for each in (srs, degrees):
+        each.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+    x, y = np.meshgrid(*(c + np.linspace(-1.2, 1.2, 601) * h for c, h in zip(center, (0.5 * (right - left), 0.5 * (top - bottom)))))
+    places = np.column_stack((x.ravel(), y.ravel()))
+    lon, lat = np.radians(np.array(osr.CoordinateTransformation(srs, degrees).TransformPoints(places))[:, :2].T)
+    lon0, lat0, _ = np.radians(osr.CoordinateTransformation(srs, degrees).TransformPoint(*center))
+    away = 2.0 * R * np.arcsin(np.sqrt(np.sin(0.5 * (lat - lat0)) ** 2 + np.cos(lat) * np.cos(lat0) * np.sin(0.5 * (lon - lon0)) ** 2))
+    inside = places[away <= radius]
+    for given, exact, half in ((left, inside[:, 0].min(), left - center[0]), (right, inside[:, 0].max(), right - center[0]),
+                               (bottom, inside[:, 1].min(), bottom - center[1]), (top, inside[:, 1].max(), top - center[1])):
+        assert 0.98 < (exact - given) / half + 1.0 <= 1.0 + 1e-9
 
 
 def test_rejected(scene, maps, tmp_path, refused):

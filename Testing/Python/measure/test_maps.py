@@ -187,7 +187,8 @@ def test_the_end_is_no_step_and_another_body_is_told(scene, tmp_path):
     assert sky == scene.sky("sun", body="moon", site=(170.5, 0.2, 0.0), time=scene.tdb("2022-11-08T08:00"))["sun"]
 
 
-def test_illumination_on_a_polar_map(scene, tmp_path):
+@pytest.mark.parametrize("on_body", (False, True), ids=("plane", "body"))
+def test_illumination_on_a_polar_map(scene, tmp_path, on_body):
     """A south polar stereographic map, whose Y axis is not north: the wall in the west of the map hides the Sun in time."""
     z = np.zeros((60, 60), np.float32)
     z[:, :5] = 3000.0
@@ -195,14 +196,16 @@ def test_illumination_on_a_polar_map(scene, tmp_path):
              '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
              'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
     path = write_georeferenced(tmp_path / "polar.tif", z, (90000, 500, 0, 75000, 0, -500), polar)
-    terrain = scene.add_terrain(path, name="polar")
+    terrain = scene.add_terrain(path, name="polar", on_body=on_body)
     horizons = scene.horizon_map(terrain, tmp_path / "horizons.tif", height=2.0, azimuths=360)
     start, step, steps = scene.tdb("2026-01-03T00:00"), 6 * 3600.0, 110
     made = scene.illumination_map(horizons, tmp_path / "lit.tif", start=start, end=start + (steps - 0.5) * step, step=step,
                                   quantities=("lit_fraction", "earth_fraction"))
     x, y = 90000 + 500 * 30.0, 75000 - 500 * 30.0  # the middle, between cells 29 and 30
     turn = np.degrees(np.arctan2(x, y))  # north leads away from the pole
-    horizon = np.maximum(horizons.horizon(30, 30).astype(float), 0.0)
+    assert (turn + horizons.first_deg(30, 30)) % 360 == pytest.approx(360.0, abs=0.5)
+    horizon = horizons.horizon(30, 30).astype(float)
+    horizon = horizon if on_body else np.maximum(horizon, 0.0)
     mean, _, seen = lit_by_hand(terrain, x, y, horizon, start, steps, step, turn)
     assert 0.1 < mean < 0.9
     assert made.read(0)[30, 30] == pytest.approx(mean, abs=0.004)
@@ -211,9 +214,9 @@ def test_illumination_on_a_polar_map(scene, tmp_path):
     assert abs(wrong - mean) > 0.008  # the direction of the wall matters
 
 
-def test_a_polar_raster_as_degrees_on_its_body(scene, tmp_path):
-    """A plateau around the pole that begins 20 km from it, resampled from a polar projection: seen from 2 km beside the pole its edge
-    stands at the elevation of its geometry on the sphere. On a plane it does not."""
+def test_a_polar_raster_on_its_body(scene, tmp_path):
+    """A plateau around the pole that begins 20 km from it: seen from 2 km beside the pole its edge stands at the elevation of its
+    geometry on the sphere, over the raster itself and resampled to degrees. On a plane it does not."""
     x = (np.arange(800) - 399.5) * 100.0
     away = 2.0 * np.degrees(np.arctan(np.hypot(x[None, :], x[:, None]) / (2.0 * R)))  # from the pole
     edge = np.degrees(20_000.0 / R)
@@ -222,8 +225,6 @@ def test_a_polar_raster_as_degrees_on_its_body(scene, tmp_path):
              '0.0174532925199433]],PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
              'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
     path = write_georeferenced(tmp_path / "polar.tif", z, (-40000, 100, 0, 40000, 0, -100), polar)
-    with pytest.raises(dspace.Unsupported, match="accepted"):
-        scene.add_terrain(path, on_body=True)
     step = 0.0025
     gdal.Warp(str(tmp_path / "degrees.tif"), str(path), dstSRS=f"+proj=longlat +R={R} +no_defs", outputBounds=(-180, -90, 180, -89),
               xRes=0.5, yRes=step, resampleAlg="bilinear")
@@ -241,6 +242,16 @@ def test_a_polar_raster_as_degrees_on_its_body(scene, tmp_path):
     assert y0 + dy * (made.rows // 2 + 0.5) == pytest.approx(-90.0 + site, abs=step)
     for azimuth, elevation in stated:
         assert found[round(azimuth / 90.0)] == pytest.approx(elevation, abs=0.06)  # resampling slopes the edge over two cells, 150 m
+    # The raster itself, whose Y axis leads from the pole through the site.
+    itself = scene.add_terrain(path, name="itself", on_body=True)
+    made = scene.horizon_map(itself, tmp_path / "itself.tif", azimuths=4, height=0.0, extent=(0.0, 2100.0, 100.0, 1900.0))
+    assert (made.columns, made.rows) == (1, 2)
+    assert made.first_deg(0, 0) == pytest.approx(360.0 - np.degrees(np.arctan2(50.0, 2050.0)), abs=0.01)  # north leads from the pole
+    found = 0.5 * (made.horizon(0, 0) + made.horizon(0, 1))
+    single = scene.horizon(itself.site(50.0, 2050.0), azimuths=360)
+    for azimuth, elevation in stated:
+        assert found[round(azimuth / 90.0)] == pytest.approx(elevation, abs=0.03)
+        assert single.elevation_deg[round(azimuth)] == pytest.approx(elevation, abs=0.03)
     flat = scene.horizon(scene.add_terrain(path, name="plane", mode="clipmap").site(50.0, 2000.0), 4)
     assert abs(flat.elevation_deg[2] - stated[0][1]) > 0.2
 

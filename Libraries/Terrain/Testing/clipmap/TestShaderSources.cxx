@@ -296,7 +296,7 @@ void Programs::AddClipmaps() {
       for (const Shaders::Features features :
            {Shaders::Features(0), lit, bright, Shaders::Features(Shaders::Label)}) {
         this->Add(called, features, pages, nullptr, !*holes);
-        if (!pole && features != Shaders::Label) {
+        if (features != Shaders::Label) {
           this->Add(called, features | Shaders::Texture, pages, nullptr, false);
         }
       }

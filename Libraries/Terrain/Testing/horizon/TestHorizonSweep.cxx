@@ -419,7 +419,7 @@ TEST(HorizonSweep, InAPolesChartItIsThatOfExactRays) {
       const double away = 0.25 * unit(random) / placement.PlaneStep(); // to 28 degrees
       const double turn = 2.0 * M_PI * unit(random);
       const Eigen::Vector2d post =
-          (Eigen::Vector2d::Constant(placement.Half()) +
+          (placement.Pole() +
            (i == 0 ? 0.0 : away) * Eigen::Vector2d(std::cos(turn), std::sin(turn)))
               .array()
               .round();

@@ -189,7 +189,7 @@ TEST(StreamedGroup, PoleChartsHaveThePatches) {
     const ClipmapChart& chart = charts[south ? 1 : 0];
     const double spacing = 2.0 * MoonRadius * chart.placement.PlaneStep();
     EXPECT_LT(spacing, 20.0);
-    const auto half = std::int64_t(chart.placement.Half());
+    const auto half = std::int64_t(chart.placement.Pole().x());
     int within = 0;
     int outside = 0;
     std::mt19937 random(6);

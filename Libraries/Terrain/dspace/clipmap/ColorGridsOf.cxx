@@ -11,7 +11,8 @@ namespace {
 
 constexpr double Degrees = 180.0 / M_PI;
 
-ColorGrid PlaneGrid(const StreamedTerrain& terrain) {
+// Of a plane, or of a raster in the plane of a pole.
+ColorGrid RasterGrid(const StreamedTerrain& terrain) {
   const ElevationInfo& info = terrain.Info();
   const Eigen::Affine2d& post = terrain.PixelToPost();
   const Eigen::Vector2d size(info.window.width, info.window.height);
@@ -57,7 +58,7 @@ ColorGrid PoleGrid(const StreamedTerrain& terrain, const PostPlacement& placemen
   ColorGrid grid;
   grid.crs = PolarCrs(terrain, placement.South());
   grid.postToMap = PostToPolarMap(terrain, placement);
-  grid.rootPosts.setConstant(2.0 * placement.Half());
+  grid.rootPosts = 2.0 * placement.Pole();
   grid.extent = Eigen::AlignedBox2d(grid.firstPost, grid.rootPosts);
   return grid;
 }
@@ -67,7 +68,8 @@ ColorGrid PoleGrid(const StreamedTerrain& terrain, const PostPlacement& placemen
 std::vector<ColorGrid> ColorGridsOf(const StreamedTerrain& terrain,
                                     const std::vector<ClipmapChart>& poles) {
   std::vector<ColorGrid> grids;
-  grids.push_back(terrain.Placement().OnBody() ? BodyGrid(terrain) : PlaneGrid(terrain));
+  const bool degrees = terrain.Placement().GetKind() == PostPlacement::Kind::Sphere;
+  grids.push_back(degrees ? BodyGrid(terrain) : RasterGrid(terrain));
   grids[0].placement = terrain.Placement();
   grids[0].crs = terrain.Info().crs;
   grids[0].postToMap = terrain.Info().pixelToMap * terrain.PixelToPost().inverse();

@@ -21,7 +21,7 @@ Eigen::Affine2d PostToPolarMap(const StreamedTerrain& terrain, const PostPlaceme
   const double step = 2.0 * terrain.Info().crs.GetAxes().semiMajor * chart.PlaneStep();
   Eigen::Affine2d map = Eigen::Affine2d::Identity();
   map.linear() << step, 0.0, 0.0, -step;
-  map.translation() << -step * chart.Half(), step * chart.Half();
+  map.translation() = -(map.linear() * chart.Pole());
   return map;
 }
 

@@ -10,27 +10,6 @@ constexpr double Degree = M_PI / 180.0;
 
 } // namespace
 
-ChartAxes ChartAxesAt(const PostPlacement& placement, const Eigen::Vector2d& post) {
-  if (placement.GetKind() == PostPlacement::Kind::Plane) {
-    return {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};
-  }
-  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
-    const Eigen::Vector2d angles = placement.Angles(post);
-    const double sl = std::sin(angles.x()), cl = std::cos(angles.x());
-    const double sp = std::sin(angles.y()), cp = std::cos(angles.y());
-    return {{-sl, cl, 0.0}, {-sp * cl, -sp * sl, cp}, {cp * cl, cp * sl, sp}};
-  }
-  // The stereographic plane keeps angles.
-  const Eigen::Vector2d u = placement.OnPlaneOfPole(post);
-  const double t = 1.0 + u.squaredNorm();
-  const auto inScene = [&](const Eigen::Vector3d& v) {
-    return placement.South() ? Eigen::Vector3d(v.x(), -v.y(), -v.z()) : v;
-  };
-  return {inScene({1.0 - 2.0 * u.x() * u.x() / t, -2.0 * u.x() * u.y() / t, -2.0 * u.x() / t}),
-          inScene({-2.0 * u.x() * u.y() / t, 1.0 - 2.0 * u.y() * u.y() / t, -2.0 * u.y() / t}),
-          inScene({2.0 * u.x() / t, 2.0 * u.y() / t, (2.0 - t) / t})};
-}
-
 ChartDirection ChartDirectionAt(const PostPlacement& placement, const Eigen::Vector2d& post,
                                 const Eigen::Vector3d& direction_S) {
   const ChartAxes axes = ChartAxesAt(placement, post);
@@ -90,11 +69,7 @@ HorizonPath::Point HorizonPath::At(double distance) const {
     point.post = {this->Post_.x() + east / this->Placement_.Step().x(),
                   (latitude - this->Placement_.First().y()) / this->Placement_.Step().y()};
   } else {
-    const double side = this->Placement_.South() ? -1.0 : 1.0;
-    // The other pole is infinitely far: a place far outside stands for it.
-    const double down = std::max(1.0 + side * vertical.z(), 1e-9) * this->Placement_.PlaneStep();
-    point.post = {this->Placement_.Half() + vertical.x() / down,
-                  this->Placement_.Half() - side * vertical.y() / down};
+    point.post = this->Placement_.PostTowards(this->Placement_.ToChart(vertical));
   }
   if (this->Placement_.Body().Spherical()) {
     point.fall = -2.0 * radius * half * half;

@@ -60,9 +60,10 @@ std::string PlacementText(const PostPlacement& placement) {
     break;
   case PostPlacement::Kind::Pole:
     add(placement.South() ? 1.0 : 0.0);
-    add(2.0 * placement.Radius() * placement.PlaneStep());
-    add(placement.Half());
-    add(0.0);
+    add(placement.PlaneStep());
+    add(placement.Pole().x());
+    add(placement.Pole().y());
+    add(placement.East() * Degrees);
     break;
   }
   add(placement.Body().Equatorial());
@@ -73,12 +74,12 @@ std::string PlacementText(const PostPlacement& placement) {
 std::optional<PostPlacement> PlacementOf(const std::string& text) {
   std::istringstream stream(text);
   std::string kind;
-  std::array<double, 6> v = {};
+  std::vector<double> v;
   stream >> kind;
-  for (double& value : v) {
-    stream >> value;
+  for (double value = 0.0; stream >> value;) {
+    v.push_back(value);
   }
-  if (!stream) {
+  if (v.size() != (kind == "pole" ? 7u : 6u)) {
     return std::nullopt;
   }
   if (kind == "plane") {
@@ -87,11 +88,11 @@ std::optional<PostPlacement> PlacementOf(const std::string& text) {
     map.translation() << v[2], v[5];
     return PostPlacement::OnPlane(map);
   }
-  const BodyEllipsoid body(v[4], v[5]);
   if (kind == "degrees") {
-    return PostPlacement::OnEllipsoid({v[0], v[1]}, {v[2], v[3]}, body);
+    return PostPlacement::OnEllipsoid({v[0], v[1]}, {v[2], v[3]}, BodyEllipsoid(v[4], v[5]));
   }
-  return kind == "pole" ? std::optional(PostPlacement::OnPole(v[0] != 0.0, v[1], v[2], body))
+  return kind == "pole" ? std::optional(PostPlacement::AtPole(v[0] != 0.0, v[1], {v[2], v[3]}, v[4],
+                                                              BodyEllipsoid(v[5], v[6])))
                         : std::nullopt;
 }
 

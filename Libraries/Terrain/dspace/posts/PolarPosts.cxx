@@ -54,9 +54,7 @@ void PolarPosts::Read(const PostBlock& block, float* heights) const {
   const auto placeOf = [&](std::int64_t c, std::int64_t r) {
     const Eigen::Vector2d post(double(this->Lattice_.ColumnPlace(block.level, c)),
                                double(this->Lattice_.RowPlace(block.level, r)));
-    const Eigen::Vector2d angles = this->Polar_.Angles(post);
-    return Eigen::Vector2d(
-        (angles - this->Placement_.First()).cwiseQuotient(this->Placement_.Step()) * scale);
+    return Eigen::Vector2d(this->Placement_.PostAt(this->Polar_.Angles(post)) * scale);
   };
   const double middle = placeOf(block.column + block.width / 2, block.row + block.height / 2).x();
   for (int j = 0; j < block.height; ++j) {

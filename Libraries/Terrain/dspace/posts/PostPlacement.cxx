@@ -53,26 +53,57 @@ PostPlacement PostPlacement::OnEllipsoid(const Eigen::Vector2d& first_deg,
 }
 
 PostPlacement PostPlacement::OnPole(bool south, double spacing, double half, double radius) {
-  if (!(spacing > 0.0 && std::isfinite(spacing)) || !(radius > 0.0 && radius <= 1e12) ||
-      !std::isfinite(half)) {
+  return OnPole(south, spacing, half, BodyEllipsoid(radius, radius));
+}
+
+PostPlacement PostPlacement::OnPole(bool south, double spacing, double half,
+                                    const BodyEllipsoid& body) {
+  return AtPole(south, 0.5 * spacing / body.Equatorial(), {half, half}, 0.0, body);
+}
+
+PostPlacement PostPlacement::AtPole(bool south, double planeStep, const Eigen::Vector2d& pole,
+                                    double east_deg, const BodyEllipsoid& body) {
+  const double radius = body.Equatorial();
+  if (!(planeStep > 0.0 && std::isfinite(planeStep)) || !(radius > 0.0 && radius <= 1e12) ||
+      !pole.allFinite() || !std::isfinite(east_deg)) {
     throw Error(Error::Kind::InvalidArgument, "terrain",
                 "a spacing of more than 0 m and a radius in (0, 1e12] m are accepted");
   }
   PostPlacement placement;
   placement.Kind_ = Kind::Pole;
   placement.South_ = south;
-  placement.PlaneStep_ = 0.5 * spacing / radius;
-  placement.Half_ = half;
+  placement.PlaneStep_ = planeStep;
+  placement.Pole_ = pole;
+  // Quarters of a turn exactly: common maps have them.
+  const double turns = std::remainder(east_deg, 360.0);
+  placement.East_ = turns * Degree;
+  placement.Turn_ = {std::cos(placement.East_), std::sin(placement.East_)};
+  if (std::remainder(turns, 90.0) == 0.0) {
+    placement.Turn_ = placement.Turn_.array().round();
+  }
   placement.Radius_ = radius;
-  placement.Body_ = BodyEllipsoid(radius, radius);
+  placement.Body_ = body;
   return placement;
 }
 
-PostPlacement PostPlacement::OnPole(bool south, double spacing, double half,
-                                    const BodyEllipsoid& body) {
-  PostPlacement placement = OnPole(south, spacing, half, body.Equatorial());
-  placement.Body_ = body;
-  return placement;
+Eigen::Vector3d PostPlacement::FromChart(const Eigen::Vector3d& v_P) const {
+  const double side = this->South_ ? -1.0 : 1.0;
+  const Eigen::Vector2d v(v_P.x(), side * v_P.y());
+  return {this->Turn_.x() * v.x() - this->Turn_.y() * v.y(),
+          this->Turn_.y() * v.x() + this->Turn_.x() * v.y(), side * v_P.z()};
+}
+
+Eigen::Vector3d PostPlacement::ToChart(const Eigen::Vector3d& v_S) const {
+  const double side = this->South_ ? -1.0 : 1.0;
+  return {this->Turn_.x() * v_S.x() + this->Turn_.y() * v_S.y(),
+          side * (this->Turn_.x() * v_S.y() - this->Turn_.y() * v_S.x()), side * v_S.z()};
+}
+
+Eigen::Vector2d PostPlacement::PostTowards(const Eigen::Vector3d& direction_P) const {
+  const double length = direction_P.norm();
+  const Eigen::Vector2d u =
+      direction_P.head<2>() / std::max(length + direction_P.z(), 1e-9 * length);
+  return this->PostOnPlane(u);
 }
 
 Eigen::Vector2d PostPlacement::Angles(const Eigen::Vector2d& post) const {
@@ -81,7 +112,17 @@ Eigen::Vector2d PostPlacement::Angles(const Eigen::Vector2d& post) const {
   }
   const Eigen::Vector2d u = this->OnPlaneOfPole(post);
   const double latitude = 0.5 * M_PI - 2.0 * std::atan(u.norm());
-  return {std::atan2(this->South_ ? -u.y() : u.y(), u.x()), this->South_ ? -latitude : latitude};
+  const double longitude = std::atan2(this->South_ ? -u.y() : u.y(), u.x()) + this->East_;
+  return {std::remainder(longitude, 2.0 * M_PI), this->South_ ? -latitude : latitude};
+}
+
+Eigen::Vector2d PostPlacement::PostAt(const Eigen::Vector2d& angles) const {
+  if (this->Kind_ != Kind::Pole) {
+    return (angles - this->First_).cwiseQuotient(this->Step_);
+  }
+  const double c = std::cos(angles.y());
+  return this->PostTowards(
+      this->ToChart({c * std::cos(angles.x()), c * std::sin(angles.x()), std::sin(angles.y())}));
 }
 
 Eigen::Vector3d PostPlacement::ToScene(const Eigen::Vector2d& post, double height) const {
@@ -98,7 +139,7 @@ Eigen::Vector3d PostPlacement::ToScene(const Eigen::Vector2d& post, double heigh
                               Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q))
             : this->Body_.Point(Eigen::Vector3d(2.0 * u.x(), 2.0 * u.y(), 1.0 - q) / (1.0 + q),
                                 height);
-    return this->South_ ? Eigen::Vector3d(p.x(), -p.y(), -p.z()) : p;
+    return this->FromChart(p);
   }
   const Eigen::Vector2d angles = this->First_ + post.cwiseProduct(this->Step_);
   const double c = std::cos(angles.y());
@@ -125,14 +166,8 @@ Eigen::Vector3d PostPlacement::ToPosts(const Eigen::Vector3d& p_S) const {
     return {post.x(), post.y(), foot.height};
   }
   if (this->Kind_ == Kind::Pole) {
-    Eigen::Vector3d d = p_S / distance;
-    if (this->South_) {
-      d = Eigen::Vector3d(d.x(), -d.y(), -d.z());
-    }
-    // The other pole is infinitely far: a place far outside stands for it.
-    const Eigen::Vector2d u = d.head<2>() / std::max(1.0 + d.z(), 1e-9);
-    return {this->Half_ + u.x() / this->PlaneStep_, this->Half_ - u.y() / this->PlaneStep_,
-            distance - this->Radius_};
+    const Eigen::Vector2d post = this->PostTowards(this->ToChart(p_S));
+    return {post.x(), post.y(), distance - this->Radius_};
   }
   const double latitude = std::atan2(p_S.z(), p_S.head<2>().norm());
   const double middle = this->MiddleColumn_ * this->Step_.x();
@@ -160,6 +195,51 @@ Eigen::Vector3d PostPlacement::North(const Eigen::Vector3d& p_S) const {
   return up.cross(Eigen::Vector3d(-std::sin(longitude), std::cos(longitude), 0.0));
 }
 
+// Posts (0, 0) to `last` of a pole's chart in which a scene coordinate of the sphere may be
+// extreme: corners, the ends of the scene's axes, and places of the sides.
+std::vector<Eigen::Vector2d> PostPlacement::ExtremesOf(const Eigen::Vector2d& last) const {
+  std::vector<Eigen::Vector2d> posts;
+  const auto take = [&](const Eigen::Vector2d& u) {
+    const Eigen::Vector2d post = this->PostOnPlane(u);
+    if ((post.array() >= 0.0).all() && (post.array() <= last.array()).all()) {
+      posts.push_back(post);
+    }
+  };
+  const Eigen::Vector2d x = this->ToChart(Eigen::Vector3d::UnitX()).head<2>();
+  const Eigen::Vector2d y = this->ToChart(Eigen::Vector3d::UnitY()).head<2>();
+  for (const Eigen::Vector2d& axis : {x, y}) {
+    take(axis);
+    take(-axis);
+  }
+  take(Eigen::Vector2d::Zero());
+  for (int side = 0; side < 4; ++side) {
+    const Eigen::Vector2d corner((side & 1) != 0 ? last.x() : 0.0,
+                                 (side & 2) != 0 ? last.y() : 0.0);
+    posts.push_back(corner);
+    // Columns and rows are a + t b on the plane, with a the nearest to the pole.
+    const Eigen::Vector2d b = Eigen::Vector2d::Unit(side == 0 || side == 3 ? 0 : 1);
+    const Eigen::Vector2d at = this->OnPlaneOfPole(corner);
+    const Eigen::Vector2d a = at - b * b.dot(at);
+    const auto takeOfSide = [&](double t) { // rounding must not take it off the side
+      posts.push_back(this->PostOnPlane(a + t * b).cwiseMax(0.0).cwiseMin(last));
+    };
+    const double one = 1.0 + a.squaredNorm();
+    takeOfSide(0.0); // height over the equator
+    for (const Eigen::Vector2d& axis : {x, y}) {
+      // 2 (e a + t e b) / (1 + a^2 + t^2) is extreme where (e b) t^2 + 2 (e a) t - (e b) one = 0.
+      const double ea = axis.dot(a), eb = axis.dot(b);
+      const double root = std::sqrt(ea * ea + eb * eb * one);
+      if (eb != 0.0) {
+        takeOfSide((-ea + root) / eb);
+        takeOfSide((-ea - root) / eb);
+      } else {
+        takeOfSide(0.0);
+      }
+    }
+  }
+  return posts;
+}
+
 Eigen::AlignedBox3d PostPlacement::BoundsOf(const Eigen::Vector2d& last, double low,
                                             double high) const {
   Eigen::AlignedBox3d box;
@@ -172,6 +252,12 @@ Eigen::AlignedBox3d PostPlacement::BoundsOf(const Eigen::Vector2d& last, double 
       for (const double r : {0.0, last.y()}) {
         extend({c, r});
       }
+    }
+    return box;
+  }
+  if (this->Kind_ == Kind::Pole) {
+    for (const Eigen::Vector2d& post : this->ExtremesOf(last)) {
+      extend(post);
     }
     return box;
   }

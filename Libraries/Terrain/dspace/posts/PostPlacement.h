@@ -2,6 +2,8 @@
 #ifndef DSPACE_TERRAIN_POSTPLACEMENT_H
 #define DSPACE_TERRAIN_POSTPLACEMENT_H
 
+#include <vector>
+
 #include <Eigen/Geometry>
 
 #include <dspace/crs/BodyEllipsoid.h>
@@ -15,7 +17,7 @@ public:
     Plane,  // scene: X east, Y north, Z up; z = height - originHeight
     Sphere, // scene: the body-fixed frame, Z to the north pole, X to longitude 0; a degree grid on
             // a sphere or, by geodetic latitude, on an ellipsoid
-    Pole    // the same scene; a square in the stereographic plane of a pole
+    Pole    // the same scene; a rectangle in the stereographic plane of a pole
   };
 
   // `postToScene` takes (c, r) to scene (x, y) [m]; invertible.
@@ -36,6 +38,11 @@ public:
   // equatorial radius.
   static PostPlacement OnPole(bool south, double spacing, double half, double radius);
   static PostPlacement OnPole(bool south, double spacing, double half, const BodyEllipsoid& body);
+  // Of a raster in that plane, turned: `planeStep` is the post spacing over twice the radius,
+  // `pole` the column and row of the pole (which may lie outside the lattice), and columns run
+  // along longitude `east_deg` from it.
+  static PostPlacement AtPole(bool south, double planeStep, const Eigen::Vector2d& pole,
+                              double east_deg, const BodyEllipsoid& body);
 
   Kind GetKind() const { return this->Kind_; }
   // Plane: its map; its origin's height.
@@ -48,16 +55,31 @@ public:
   double Radius() const { return this->Radius_; } // of an ellipsoid at the equator
   const BodyEllipsoid& Body() const { return this->Body_; }
   bool OnBody() const { return this->Kind_ != Kind::Plane; }
-  // Pole: which; post spacing at the pole over twice the radius; its column and row.
+  // Pole: which; post spacing at the pole over twice the radius; its column and row; the longitude
+  // that columns run along from it [rad].
   bool South() const { return this->South_; }
   double PlaneStep() const { return this->PlaneStep_; }
-  double Half() const { return this->Half_; }
-  // The stereographic plane's place of a post, in twice the radius.
+  const Eigen::Vector2d& Pole() const { return this->Pole_; }
+  double East() const { return this->East_; }
+  // The chart's axes are X along the columns from the pole, Y against the rows, Z out of the pole.
+  // Its stereographic plane is X and Y, in twice the radius: the place of a post, and back.
   Eigen::Vector2d OnPlaneOfPole(const Eigen::Vector2d& post) const {
-    return this->PlaneStep_ * Eigen::Vector2d(post.x() - this->Half_, this->Half_ - post.y());
+    return this->PlaneStep_ *
+           Eigen::Vector2d(post.x() - this->Pole_.x(), this->Pole_.y() - post.y());
   }
-  // Longitude and latitude [rad] of a post of a body.
+  Eigen::Vector2d PostOnPlane(const Eigen::Vector2d& u) const {
+    return {this->Pole_.x() + u.x() / this->PlaneStep_, this->Pole_.y() - u.y() / this->PlaneStep_};
+  }
+  // Of a direction in the chart's axes, of any length but 0. The other pole is infinitely far: a
+  // place far outside stands for it.
+  Eigen::Vector2d PostTowards(const Eigen::Vector3d& direction_P) const;
+  // Vectors between the chart's axes and the scene's.
+  Eigen::Vector3d FromChart(const Eigen::Vector3d& v_P) const;
+  Eigen::Vector3d ToChart(const Eigen::Vector3d& v_S) const;
+  // Longitude and latitude [rad] of a post of a body, and back; around a degree grid as `angles`
+  // counts turns.
   Eigen::Vector2d Angles(const Eigen::Vector2d& post) const;
+  Eigen::Vector2d PostAt(const Eigen::Vector2d& angles) const;
 
   Eigen::Vector3d ToScene(const Eigen::Vector2d& post, double height) const;
   // (c, r, height) of a point. On a sphere c is within half a turn of the middle column; any at the
@@ -67,13 +89,15 @@ public:
   Eigen::Vector3d Up(const Eigen::Vector3d& p_S) const;
   // North, unit: Y on a plane; on a body towards its north pole, any direction at the poles.
   Eigen::Vector3d North(const Eigen::Vector3d& p_S) const;
-  // The bounds of posts (0, 0) to `last` at heights from `low` to `high` [m] in the scene; of a
-  // plane or a sphere.
+  // The bounds of posts (0, 0) to `last` at heights from `low` to `high` [m] in the scene; not for
+  // a pole of an ellipsoid.
   Eigen::AlignedBox3d BoundsOf(const Eigen::Vector2d& last, double low, double high) const;
   // The greater of a cell's two sides there [m], at height 0.
   double CellSize(const Eigen::Vector2d& post) const;
 
 private:
+  std::vector<Eigen::Vector2d> ExtremesOf(const Eigen::Vector2d& last) const;
+
   Kind Kind_ = Kind::Plane;
   Eigen::Affine2d PostToScene_ = Eigen::Affine2d::Identity();
   Eigen::Affine2d SceneToPost_ = Eigen::Affine2d::Identity();
@@ -85,7 +109,9 @@ private:
   double MiddleColumn_ = 0.0;
   bool South_ = false;
   double PlaneStep_ = 0.0;
-  double Half_ = 0.0;
+  Eigen::Vector2d Pole_ = Eigen::Vector2d::Zero();
+  double East_ = 0.0;                               // [rad]
+  Eigen::Vector2d Turn_ = Eigen::Vector2d::UnitX(); // cosine and sine of it
 };
 
 } // namespace dspace

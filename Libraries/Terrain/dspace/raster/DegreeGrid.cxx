@@ -7,15 +7,14 @@
 
 #include <dspace/Error.h>
 #include <dspace/crs/CrsTransform.h>
+#include <dspace/raster/PolarGrid.h>
+#include <dspace/raster/RasterBody.h>
 
 namespace dspace {
 namespace {
 
 constexpr double Degree = M_PI / 180.0;
 constexpr double Near = 0.01; // of a pixel
-constexpr const char* Accepted =
-    "accepted on a body is a north-up grid in longitude and latitude, or in an equidistant "
-    "cylindrical projection of a sphere; or draw it on a plane";
 
 [[noreturn]] void Reject(const ElevationInfo& info, Error::Kind kind, const std::string& message) {
   throw Error(kind, "raster '" + info.path + "'", message);
@@ -39,11 +38,12 @@ MapToDegrees ToDegrees(const ElevationInfo& info) {
   if (crs.GetKind() == Crs::Kind::Geographic) {
     return {unit, Eigen::Vector2d::Zero()};
   }
+  BodyOfRaster(info); // rejects projections of an ellipsoid
   const OGRSpatialReference& srs = *crs.Ogr();
   const char* projection = srs.GetAttrValue("PROJECTION");
   if (!projection || std::string(projection) != SRS_PT_EQUIRECTANGULAR) {
     Reject(info, Error::Kind::Unsupported,
-           "its CRS '" + crs.GetName() + "' is a projection of another kind; " + Accepted);
+           "its CRS '" + crs.GetName() + "' is a projection of another kind; " + AcceptedOnBody);
   }
   const double metre = crs.GetAxes().semiMajor * Degree; // of a degree
   const double parallel = srs.GetNormProjParm(SRS_PP_STANDARD_PARALLEL_1, 0.0);
@@ -65,7 +65,8 @@ MapToDegrees ToDegrees(const ElevationInfo& info) {
   const Eigen::Vector2d off = map.factor.cwiseProduct(middle) + map.shift - place;
   if (!(std::abs(std::remainder(off.x(), 360.0)) < 1e-6 && std::abs(off.y()) < 1e-6)) {
     Reject(info, Error::Kind::Unsupported,
-           "its CRS '" + crs.GetName() + "' is not understood as a grid of degrees; " + Accepted);
+           "its CRS '" + crs.GetName() + "' is not understood as a grid of degrees; " +
+               AcceptedOnBody);
   }
   return map;
 }
@@ -84,44 +85,15 @@ bool Rotated(const ElevationInfo& info) {
          std::abs(m(1, 0)) * info.window.width > Near * std::abs(m(1, 1));
 }
 
-BodyEllipsoid BodyOf(const ElevationInfo& info) {
-  const BodyAxes& axes = info.crs.GetAxes();
-  const VerticalDatum& datum = info.verticalDatum;
-  const bool stated =
-      (datum.kind == VerticalDatum::Kind::Sphere || datum.kind == VerticalDatum::Kind::Radius) &&
-      datum.radius > 0.0;
-  const bool sphere = std::abs(axes.semiMajor - axes.semiMinor) <= 1e-9 * axes.semiMajor;
-  if (sphere) {
-    const double radius = stated ? datum.radius : axes.semiMajor;
-    return {radius, radius};
-  }
-  const std::string ellipsoid = "its CRS '" + info.crs.GetName() + "' stands on an ellipsoid of " +
-                                Number(axes.semiMajor) + " by " + Number(axes.semiMinor) + " m";
-  if (datum.kind == VerticalDatum::Kind::Sphere || datum.kind == VerticalDatum::Kind::Radius) {
-    Reject(info, Error::Kind::Unsupported,
-           ellipsoid + ", but its heights count from a sphere (vertical datum '" + datum.Text() +
-               "'); accepted on an ellipsoid are heights above it (vertical_datum='ellipsoid')");
-  }
-  if (info.crs.GetKind() != Crs::Kind::Geographic) {
-    Reject(info, Error::Kind::Unsupported, ellipsoid + " and is a projection; " + Accepted);
-  }
-  if (!(axes.semiMinor < axes.semiMajor && axes.semiMinor >= 0.5 * axes.semiMajor)) {
-    Reject(info, Error::Kind::Unsupported,
-           ellipsoid + "; accepted is a polar radius of half the equatorial one or more, and not "
-                       "over it");
-  }
-  return {axes.semiMajor, axes.semiMinor};
-}
-
 } // namespace
 
 DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   const Crs& crs = info.crs;
   if (!crs.HasGeographic() || !info.georeferenced) {
     Reject(info, Error::Kind::Unsupported,
-           std::string("it has no longitude and latitude; ") + Accepted);
+           std::string("it has no longitude and latitude; ") + AcceptedOnBody);
   }
-  const BodyEllipsoid body = BodyOf(info);
+  const BodyEllipsoid body = BodyOfRaster(info);
   const Eigen::Matrix2d m = info.pixelToMap.linear();
   const int width = info.window.width;
   const int height = info.window.height;
@@ -136,7 +108,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
     Reject(
         info, Error::Kind::Unsupported,
         std::string(rotated ? "its pixels are rotated or sheared" : "its rows run to the north") +
-            " against longitude and latitude (gdalwarp writes a north-up copy); " + Accepted);
+            " against longitude and latitude (gdalwarp writes a north-up copy); " + AcceptedOnBody);
   }
 
   const double step = std::abs(grid.step_deg.x());
@@ -175,7 +147,7 @@ DegreeGrid DegreeGridOf(const ElevationInfo& info) {
 }
 
 void CloseAround(ElevationInfo& info) {
-  if (!info.crs.HasGeographic() || !info.georeferenced || Rotated(info)) {
+  if (!info.crs.HasGeographic() || !info.georeferenced || Rotated(info) || PolarGridOf(info)) {
     return;
   }
   const MapToDegrees toDegrees = ToDegrees(info);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include <dspace/Error.h>
+
 namespace dspace {
 namespace {
 
@@ -26,9 +28,18 @@ bool RayPath::Clip(double o, double d, double low, double high) {
 RayPath::RayPath(const PostPlacement& placement, const PostLattice& lattice,
                  const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
                  double low, double high)
-    : Placement_(placement), Curved_(placement.GetKind() == PostPlacement::Kind::Sphere),
-      Flattened_(Curved_ && !placement.Body().Spherical()), Last_(maximum), Origin_(origin_S),
+    : Placement_(placement), Curved_(placement.OnBody()),
+      Flattened_(Curved_ && !placement.Body().Spherical()),
+      AtPole_(placement.GetKind() == PostPlacement::Kind::Pole), Last_(maximum), Origin_(origin_S),
       Direction_(unit_S) {
+  if (this->AtPole_) {
+    if (this->Flattened_) {
+      throw Error(Error::Kind::Unsupported, "terrain",
+                  "rays on a pole's chart of an ellipsoid are rejected; accepted: of a sphere");
+    }
+    this->Origin_ = placement.ToChart(origin_S);
+    this->Direction_ = placement.ToChart(unit_S);
+  }
   // The bounds are of heights as doubles, posts are floats.
   const double pad = 1e-6 * (1.0 + high - low) + 1.2e-7 * std::max(std::abs(low), std::abs(high));
   low -= pad;
@@ -102,6 +113,9 @@ Eigen::Vector2d RayPath::Post(double t, double column) const {
   if (!this->Curved_) {
     return p.head<2>();
   }
+  if (this->AtPole_) {
+    return this->Placement_.PostTowards(p);
+  }
   const Eigen::Vector2d& step = this->Placement_.Step();
   const double longitude = std::atan2(p.y(), p.x()) - this->Placement_.First().x();
   const Eigen::Vector3d up = this->Flattened_ ? this->FootAt(t).up : p; // any length
@@ -137,6 +151,10 @@ void RayPath::ColumnCrossings(double column, std::vector<double>& t) const {
     }
     return;
   }
+  if (this->AtPole_) {
+    this->CrossingsAtPole(0, column, t);
+    return;
+  }
   const double longitude = this->Placement_.First().x() + column * this->Placement_.Step().x();
   const Eigen::Vector3d side(-std::sin(longitude), std::cos(longitude), 0.0);
   const double rate = side.dot(this->Direction_);
@@ -150,6 +168,10 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
     if (this->Direction_.y() != 0.0) {
       t.push_back((row - this->Origin_.y()) / this->Direction_.y());
     }
+    return;
+  }
+  if (this->AtPole_) {
+    this->CrossingsAtPole(1, row, t);
     return;
   }
   const double latitude = this->Placement_.First().y() + row * this->Placement_.Step().y();
@@ -167,6 +189,51 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
     if (std::abs(angle) < 0.5 * M_PI) { // seen from the centre the ray spans half a turn
       t.push_back(this->Nearest_ + this->NearestRadius_ * std::tan(angle));
     }
+  }
+}
+
+// On the line at k of the plane x = k (r + z), r the distance from the centre: hence
+// x (x - 2 k z) = k^2 (x^2 + y^2).
+void RayPath::CrossingsAtPole(int axis, double line, std::vector<double>& t) const {
+  const double k =
+      this->Placement_.OnPlaneOfPole(Eigen::Vector2d::Constant(line))[Eigen::Index(axis)];
+  const Eigen::Vector3d& o = this->Origin_;
+  const Eigen::Vector3d& d = this->Direction_;
+  const double x = o[axis], dx = d[axis];
+  if (k == 0.0) { // through the pole
+    if (dx != 0.0) {
+      t.push_back(-x / dx);
+    }
+    return;
+  }
+  const double square = k * k;
+  // a t^2 + 2 b t + e = 0.
+  const double a = dx * (dx - 2.0 * k * d.z()) - square * d.head<2>().squaredNorm();
+  const double b = x * dx - k * (x * d.z() + dx * o.z()) - square * o.head<2>().dot(d.head<2>());
+  const double e = x * (x - 2.0 * k * o.z()) - square * o.head<2>().squaredNorm();
+  double root = b * b - a * e;
+  if (root < -1e-12 * (b * b + std::abs(a * e))) {
+    return;
+  }
+  root = std::sqrt(std::max(root, 0.0));
+  const double q = -(b + std::copysign(root, b));
+  const auto take = [&](double at) {
+    const Eigen::Vector3d near = o + at * d;
+    if ((near[axis] - k * near.z()) * k < 0.0) {
+      return; // where -r stands for r
+    }
+    // The square lost digits: one step of Newton's method on the line's own equation.
+    const double r = near.norm();
+    const double off = near[axis] - k * (r + near.z());
+    const double rate = dx - k * (near.dot(d) / r + d.z());
+    const double better = at - off / rate;
+    t.push_back(std::isfinite(better) && std::abs(better - at) < 1.0 ? better : at);
+  };
+  if (q != 0.0) {
+    take(e / q);
+  }
+  if (a != 0.0) {
+    take(q / a);
   }
 }
 

@@ -11,10 +11,12 @@
 namespace dspace {
 
 // t is the distance [m] along the ray from an origin of its own. Lines of the lattice are lines on
-// a plane, and half-planes of longitude and cones of latitude on a body.
+// a plane, half-planes of longitude and cones of latitude on a degree grid, and around a pole cones
+// from the centre through circles that meet at the other pole.
 class RayPath {
 public:
-  // `unit_S` is of length 1. Heights outside [low, high] are of no interest.
+  // `unit_S` is of length 1. Heights outside [low, high] are of no interest. A pole's chart must be
+  // of a sphere.
   RayPath(const PostPlacement& placement, const PostLattice& lattice,
           const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S, double maximum,
           double low, double high);
@@ -45,15 +47,18 @@ private:
   }
   void FindNearest();
   void RowCrossingsOfEllipsoid(double latitude, std::vector<double>& t) const;
+  void CrossingsAtPole(int axis, double line, std::vector<double>& t) const;
 
   const PostPlacement& Placement_;
   bool Curved_;
   bool Flattened_; // on an ellipsoid
+  bool AtPole_;    // on a pole's chart
   double Entry_ = 0.0;
   double First_ = 0.0;
   double Last_ = 0.0;
   double Slack_ = 0.0;
-  // Plane: (c, r, height) and its change a metre. Body: in the scene.
+  // Plane: (c, r, height) and its change a metre. Degree grid: in the scene. Pole: in the chart's
+  // axes.
   Eigen::Vector3d Origin_;
   Eigen::Vector3d Direction_;
   // Body: the t of the ray's lowest place. Sphere: how far it is from the centre, and the sine of

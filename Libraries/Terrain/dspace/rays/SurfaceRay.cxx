@@ -181,9 +181,9 @@ bool SurfaceRay::Visit(March& march, int bits, std::int64_t c, std::int64_t r, d
   crossings.clear();
   path.ColumnCrossings(middleColumn, crossings);
   path.RowCrossings(middleRow, crossings);
-  std::array<double, 5> cuts = {t0, t1, t1, t1, t1};
+  std::array<double, 6> cuts = {t0, t1, t1, t1, t1, t1};
   int count = 1;
-  for (const double t : crossings) { // three at most, put where they belong
+  for (const double t : crossings) { // four at most, put where they belong
     if (t > t0 && t < t1) {
       int at = count++;
       for (; at > 1 && cuts[at - 1] > t; --at) {

@@ -22,10 +22,13 @@ HeightRange FindHeightRange(const std::string& name, const ElevationSource& sour
   const RasterWindow window = source.Info().window;
   HeightRange range;
   range.exact = std::int64_t(window.width) * window.height <= ReadWhole;
-  // As a grid on a plane, which on a body is the one of longitudes and latitudes.
+  // As a grid on a plane, which on a body is the one of longitudes and latitudes, or the pole's.
   Eigen::Affine2d postToScene = placement.PostToScene();
-  if (placement.OnBody()) {
+  if (placement.GetKind() == PostPlacement::Kind::Sphere) {
     postToScene.linear() = (placement.Radius() * placement.Step()).asDiagonal();
+  } else if (placement.GetKind() == PostPlacement::Kind::Pole) {
+    const double post = placement.CellSize(placement.Pole());
+    postToScene.linear() = Eigen::Vector2d(post, -post).asDiagonal();
   }
   // Pixels, not means: the mean of ups and downs is neither.
   int factor = 1;

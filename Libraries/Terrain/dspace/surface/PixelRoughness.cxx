@@ -62,6 +62,12 @@ Eigen::Vector2d PixelRoughness::Reach(const Eigen::Vector3d& p_S, double radius)
     return radius / posts * Eigen::Vector2d(m.row(0).norm(), m.row(1).norm());
   }
   const double angle = radius / placement.Body().NorthRadius(0.0); // at most
+  if (placement.GetKind() == PostPlacement::Kind::Pole) {          // farthest outwards
+    const double away =
+        2.0 * std::atan(placement.OnPlaneOfPole(placement.ToPosts(p_S).head<2>()).norm());
+    const double reach = std::tan(0.5 * std::min(away + angle, 3.1)) - std::tan(0.5 * away);
+    return Eigen::Vector2d::Constant(reach / placement.PlaneStep() / posts);
+  }
   const Eigen::Vector2d step = placement.Step().cwiseAbs() * posts;
   const double parallel = placement.Up(p_S).head<2>().norm();
   const double aside = angle < 0.5 * M_PI && std::sin(angle) < parallel
@@ -78,8 +84,9 @@ PostBlock PixelRoughness::BlockAbout(const Eigen::Vector3d& p_S, double radius) 
   const double posts = std::ldexp(1.0, level); // of level 0 to the next of the level
   const Eigen::Vector2d post = placement.ToPosts(p_S).head<2>() / posts;
   const Eigen::Vector2d reach = this->Reach(p_S, radius);
-  const double most = placement.OnBody() ? 2.0 * M_PI / std::abs(placement.Step().x()) / posts
-                                         : double(lattice.ColumnsAt(level));
+  const double most = placement.GetKind() == PostPlacement::Kind::Sphere
+                          ? 2.0 * M_PI / std::abs(placement.Step().x()) / posts
+                          : double(lattice.ColumnsAt(level));
   const double wide = std::min(2.0 * reach.x(), most);
   const double high = std::min(2.0 * reach.y(), double(lattice.RowsAt(level)));
   if (wide * high > MaximumPixels * every * every) {

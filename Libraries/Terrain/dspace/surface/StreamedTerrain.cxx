@@ -9,7 +9,9 @@
 #include <dspace/clipmap/arithmetic/ClipmapWindow.h>
 #include <dspace/tracks/GroundTracks.h>
 
+#include <dspace/posts/ChartAxes.h>
 #include <dspace/raster/DegreeGrid.h>
+#include <dspace/raster/PolarGrid.h>
 #include <dspace/surface/HeightRange.h>
 #include <dspace/surface/PixelRoughness.h>
 #include <dspace/surface/ResamplingError.h>
@@ -28,13 +30,15 @@ Eigen::Vector2d MiddleOf(const ElevationInfo& info) {
 }
 
 // A square of side s departs from the sphere most in its middle, by (s sqrt 2)^2 / 8R.
-int SubdivisionsFor(const DegreeGrid& grid) {
+int SubdivisionsFor(const BodyEllipsoid& body, double side) {
   // An ellipsoid bends most along the meridian at the equator.
-  const double least = grid.body.NorthRadius(0.0);
+  const double allowed = std::sqrt(4.0 * body.NorthRadius(0.0) * Departure);
+  return int(std::ceil(std::log2(std::max(1.0, side / allowed))));
+}
+
+int SubdivisionsFor(const DegreeGrid& grid) {
   const double side = grid.body.Equatorial() * grid.step_deg.cwiseAbs().maxCoeff() * Degree;
-  const double allowed = std::sqrt(4.0 * least * Departure);
-  const int needed = int(std::ceil(std::log2(std::max(1.0, side / allowed))));
-  return std::max(needed, grid.poles ? 1 : 0);
+  return std::max(SubdivisionsFor(grid.body, side), grid.poles ? 1 : 0);
 }
 
 // A CRS given by hand stands for a file's wrong one, but no other body has this ellipsoid.
@@ -135,7 +139,9 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
   if (options.onBody) {
     RequireOwnEllipsoid(path, options.elevation, source->Info());
   }
-  if (options.onBody && DegreeGridOf(source->Info()).repeats) {
+  const std::optional<PolarGrid> polar =
+      options.onBody ? PolarGridOf(source->Info()) : std::nullopt;
+  if (options.onBody && !polar && DegreeGridOf(source->Info()).repeats) {
     ElevationOptions once = elevation;
     once.mapWindow.reset();
     once.window = source->Info().window;
@@ -146,8 +152,10 @@ std::shared_ptr<StreamedTerrain> StreamedTerrain::Open(const std::string& path,
   const std::shared_ptr<StreamedTerrain> terrain(
       new StreamedTerrain(name, std::move(source), std::move(warnings)));
   terrain->Deadline_ = options.deadline;
-  if (options.onBody) {
-    terrain->InitOnBody(options);
+  if (polar) {
+    terrain->InitAtPole(options, *polar);
+  } else if (options.onBody) {
+    terrain->InitOnDegrees(options);
   } else {
     terrain->InitOnPlane(options);
   }
@@ -168,7 +176,21 @@ void StreamedTerrain::InitOnPlane(const StreamedTerrainOptions& options) {
       PostPlacement::OnPlane(this->Posts_->PostToScene(*this->Frame_), options.originHeight);
 }
 
-void StreamedTerrain::InitOnBody(const StreamedTerrainOptions& options) {
+void StreamedTerrain::InitAtPole(const StreamedTerrainOptions& options, const PolarGrid& grid) {
+  TerrainPosts::Layout layout;
+  const double side = 2.0 * grid.body.Equatorial() * grid.step; // at the pole, where it is greatest
+  layout.subdivisions = std::max(SubdivisionsFor(grid.body, side), options.subdivisions);
+  const auto placementOf = [&grid](const PostLattice& /*lattice*/, int subdivisions) {
+    const double posts = std::ldexp(1.0, subdivisions);
+    return PostPlacement::AtPole(grid.south, grid.step / posts, grid.pole * posts, grid.east_deg,
+                                 grid.body);
+  };
+  this->Posts_ = std::make_shared<TerrainPosts>(this->GetName(), this->Source_, options, layout,
+                                                nullptr, placementOf);
+  this->Placement_ = placementOf(this->Posts_->Lattice(), this->Subdivisions());
+}
+
+void StreamedTerrain::InitOnDegrees(const StreamedTerrainOptions& options) {
   const DegreeGrid grid = DegreeGridOf(this->Info());
   TerrainPosts::Layout layout;
   layout.subdivisions = std::max(SubdivisionsFor(grid), options.subdivisions);
@@ -278,7 +300,7 @@ const SceneFrame& StreamedTerrain::Frame() const {
 
 Eigen::Vector2d StreamedTerrain::MapToPost(const Eigen::Vector2d& map) const {
   Eigen::Vector2d post = this->Posts_->MapToPost() * map;
-  if (this->OnBody()) { // towards the data
+  if (this->OnDegrees()) { // towards the data
     const double turn = 2.0 * M_PI / std::abs(this->Placement_.Step().x());
     const double last = double(this->Posts_->Lattice().columns) - 1.0;
     if (this->Posts_->Lattice().periodic) {
@@ -297,6 +319,13 @@ Eigen::Vector3d StreamedTerrain::NormalAt(const HeightGrid::Facet& facet,
   if (!this->OnBody()) {
     const Eigen::Vector2d g = this->Placement_.SceneToPost().linear().transpose() * rise;
     return Eigen::Vector3d(-g.x(), -g.y(), 1.0).normalized();
+  }
+  if (!this->OnDegrees()) {
+    const Eigen::Vector2d post = this->Placement_.ToPosts(p_S).head<2>();
+    const ChartAxes axes = ChartAxesAt(this->Placement_, post);
+    const double radius = this->Placement_.Radius();
+    const double metres = this->Placement_.CellSize(post) * (radius + facet.height) / radius;
+    return (axes.up - (rise.x() * axes.east - rise.y() * axes.north) / metres).normalized();
   }
   // p = (R + h(c, r)) up(c, r): its derivatives by c and r span the tangent plane. On an ellipsoid
   // the radii are those of curvature.

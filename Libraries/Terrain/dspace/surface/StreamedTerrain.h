@@ -25,6 +25,7 @@
 namespace dspace {
 
 struct DegreeGrid;
+struct PolarGrid;
 class GroundTracks;
 class TrackPosts;
 class TerrainPosts;
@@ -37,9 +38,9 @@ struct StreamedTerrainOptions {
   double originHeight = 0.0; // [m] above the vertical datum, where scene z = 0
   // The terrain stands on the body: the scene is the body-fixed frame (Z to the north pole, X to
   // longitude 0). Height 0 is the CRS's sphere, with the radius of the vertical datum if it states
-  // one, or its ellipsoid of revolution, along whose normals heights count. Requires a degree grid.
-  // A grid that goes once
-  // around is closed across its edge, and over the poles if it reaches them.
+  // one, or its ellipsoid of revolution, along whose normals heights count. Requires a degree grid
+  // (DegreeGridOf) or a polar stereographic projection of a sphere (PolarGridOf). A degree grid
+  // that goes once around is closed across its edge, and over the poles if it reaches them.
   bool onBody = false;
   // Each cell between pixels is halved this many times; on a body at least as often as its size
   // asks. Wheel tracks need posts some centimetres apart. 0 to 12, on a body to 24.
@@ -166,14 +167,16 @@ private:
   StreamedTerrain(const std::string& name, std::shared_ptr<ElevationSource> source,
                   std::vector<std::string> warnings);
   void InitOnPlane(const StreamedTerrainOptions& options);
-  void InitOnBody(const StreamedTerrainOptions& options);
+  void InitOnDegrees(const StreamedTerrainOptions& options);
+  void InitAtPole(const StreamedTerrainOptions& options, const PolarGrid& grid);
   void Resample(const DegreeGrid& grid, const ElevationPyramidOptions& options);
   std::vector<Eigen::Vector2d> PostsOf(const Eigen::Ref<const Rows3>& points_S) const;
   void FindHeightBounds();
   void AddPatchReports();
   SurfaceSample SampleAt(const Eigen::Vector2d& post, const Eigen::Vector3d& vertical_S) const;
   Eigen::Vector3d NormalAt(const HeightGrid::Facet& facet, const Eigen::Vector3d& p_S) const;
-  bool OnBody() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
+  bool OnBody() const { return this->Placement_.OnBody(); }
+  bool OnDegrees() const { return this->Placement_.GetKind() == PostPlacement::Kind::Sphere; }
 
   std::shared_ptr<ElevationSource> Source_;
   std::shared_ptr<TerrainPosts> Posts_;

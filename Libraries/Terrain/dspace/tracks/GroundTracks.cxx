@@ -116,9 +116,7 @@ Eigen::Vector2d GroundTracks::ToAngles(const Eigen::Vector2d& map) const {
 }
 
 Eigen::Vector2d GroundTracks::ToMap(const Eigen::Vector2d& angles) const {
-  return this->MapToPost_.inverse() *
-         Eigen::Vector2d((angles * OneDegree - this->Placement_.First())
-                             .cwiseQuotient(this->Placement_.Step()));
+  return this->MapToPost_.inverse() * this->Placement_.PostAt(angles * OneDegree);
 }
 
 void GroundTracks::Save(const std::string& path) const {

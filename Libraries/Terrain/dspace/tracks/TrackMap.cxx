@@ -79,17 +79,16 @@ Eigen::AlignedBox2d TrackMap::PostsIn(const Eigen::AlignedBox2d& box, double col
   const PostPlacement& placement = this->Placement_;
   if (placement.GetKind() == PostPlacement::Kind::Pole) {
     // The image of a circle is a circle.
-    const Eigen::Vector3d d = placement.South() ? Eigen::Vector3d(up.x(), -up.y(), -up.z()) : up;
+    const Eigen::Vector3d d = placement.ToChart(up);
     const double aside = d.head<2>().norm();
     const double distance = std::atan2(aside, d.z());
     const double far = std::tan(0.5 * std::min(distance + angle, 3.1));
     const double near = std::tan(0.5 * (distance - angle));
     const Eigen::Vector2d way =
         aside > 0.0 ? Eigen::Vector2d(d.head<2>() / aside) : Eigen::Vector2d::UnitX();
-    const Eigen::Vector2d u = 0.5 * (near + far) * way / placement.PlaneStep();
     const Eigen::Vector2d half =
         Eigen::Vector2d::Constant(0.5 * (far - near) / placement.PlaneStep());
-    const Eigen::Vector2d middle(placement.Half() + u.x(), placement.Half() - u.y());
+    const Eigen::Vector2d middle = placement.PostOnPlane(0.5 * (near + far) * way);
     return {middle - half, middle + half};
   }
   const double latitude = std::atan2(up.z(), up.head<2>().norm());

@@ -12,6 +12,7 @@ from dspace.command_line import Failed, lazy
 from dspace.command_line.recorded import add_recording, recorded_scene
 from dspace.command_line.terrain import add_raster_options
 from dspace.command_line.terrain_rasters import add, degrees, gdal_modules, given
+from dspace.errors import Unsupported
 
 np = lazy("numpy")
 
@@ -25,8 +26,8 @@ def add_ground(parser, file_help, required=True):
     add_recording(parser, source)
     parser.add_argument("--on", metavar="NAME", help="of --recording: the terrain of places and maps (default: the scene's only one)")
     parser.add_argument("--plane", action="store_true",
-                        help="place the terrain on a plane, without the body's curvature (default: a degree grid is placed "
-                        "on its body, any other raster on a plane)")
+                        help="place the terrain on a plane, without the body's curvature (default: a degree grid and a polar "
+                        "stereographic raster are placed on their body, any other raster on a plane)")
     add_raster_options(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--out", metavar="FILE", help=file_help)
@@ -85,13 +86,21 @@ class MeasuredGround:
         self.crs = degrees(osr, self.terrain.crs) if self.terrain is not None else None
 
     def _open(self, options, osr):
-        self.on_body = not options.plane and _is_degree_grid(options, osr)
+        self.on_body, why = not options.plane, ""
+        if self.on_body:
+            try:
+                self.terrain, warned = add(self.scene, options.terrain, options, name="terrain", on_body=True)
+            except Unsupported as error:
+                if _is_in_degrees(options, osr):
+                    raise
+                self.on_body, why = False, f" ({error})"
+        if not self.on_body:
+            self.terrain, warned = add(self.scene, options.terrain, options, name="terrain", on_body=False)
         self.arguments = {**given(options), "on_body": self.on_body}  # of add_terrain
-        self.terrain, warned = add(self.scene, options.terrain, options, name="terrain", on_body=self.on_body)
         for warning in warned:
             print(f"dspace: note: {options.terrain}: {warning}", file=sys.stderr)
         if not self.on_body:
-            print(f"dspace: note: {options.terrain}: the terrain is on a plane: the body's curvature is left out",
+            print(f"dspace: note: {options.terrain}: the terrain is on a plane: the body's curvature is left out{why}",
                   file=sys.stderr)
 
     def _find(self, options):
@@ -157,7 +166,7 @@ def source_of(options, ground):
     return {"terrain": str(options.terrain), "on_body": ground.on_body}
 
 
-def _is_degree_grid(options, osr):
+def _is_in_degrees(options, osr):
     if options.crs:
         crs = osr.SpatialReference()
         try:

@@ -208,9 +208,19 @@ def extent_around(terrain, center, radius):
         reject(about, "the radius", radius, "a finite number of metres above 0")
     x, y = center
     middle = terrain.from_map([x, y, 0.0])
-    if not terrain.on_body:
+    if not (terrain.on_body and terrain._is_degree_grid()):
         turn = np.radians(np.arange(0.0, 360.0, 1.0))
-        ring = middle + radius / np.cos(np.radians(0.5)) * np.column_stack((np.cos(turn), np.sin(turn), 0.0 * turn))
+        level = np.column_stack((np.cos(turn), np.sin(turn), 0.0 * turn))
+        reach = radius / np.cos(np.radians(0.5))
+        if terrain.on_body:  # along great circles
+            away = np.linalg.norm(middle)
+            up = middle / away
+            side = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+            side /= np.linalg.norm(side)
+            level = level @ (side, np.cross(up, side), up)
+            ring = away * (np.cos(reach / away) * up + np.sin(reach / away) * level)
+        else:
+            ring = middle + reach * level
         edge = terrain.to_map(ring)
         return edge[:, 0].min(), edge[:, 1].max(), edge[:, 0].max(), edge[:, 1].min()
     angle = np.degrees(radius / np.linalg.norm(middle)) * 1.01  # the ellipsoid's flattening is less

@@ -142,13 +142,8 @@ class _Ground:
 
     def __init__(self, terrain):
         self._terrain = terrain
-        west, east, south, north = terrain.map_extent
-        middle = np.array([[0.5 * (west + east), 0.5 * (south + north), 0.0]])
-        located = terrain.locate(middle, map=True)
-        self._has_degrees = bool(np.isfinite(located.longitude).all())
-        turn = (float(located.longitude[0]) - middle[0, 0]) % 360 if self._has_degrees else np.nan
-        self.is_degree_grid = self._has_degrees and min(turn, 360 - turn) < 1e-9 and \
-            abs(float(located.latitude[0]) - middle[0, 1]) < 1e-9
+        self._has_degrees = terrain._middle()[1] is not None
+        self.is_degree_grid = terrain._is_degree_grid()
 
     def _degrees(self, places):
         if self.is_degree_grid:

@@ -55,11 +55,35 @@ class MapFile:
         return data.GetRasterBand(band % len(self.bands) + 1).ReadAsArray(0, int(first), self.columns, int(count))
 
     def horizon(self, column, row):
-        """Returns the values of all bands at a cell, an array (bands,): of a horizon map the horizon of the cell [deg]."""
+        """Returns the values of all bands at a cell, an array (bands,): of a horizon map the horizon of the cell [deg]. Azimuths of
+        a map on a plane and of one in a polar projection count from the map's Y axis, which first_deg() turns to true north."""
+        self._require_cell(column, row)
+        return np.asarray(self._dataset().ReadAsArray(column, row, 1, 1)).reshape(-1)
+
+    def first_deg(self, column, row):
+        """Returns the direction of the map's Y axis at a cell, clockwise from true north [deg], 0 to 360: azimuths from true north
+        are a horizon map's plus this. 0 where the map is in longitude and latitude; arbitrary at a pole itself. Raises
+        dspace.Unsupported for a map without longitudes and latitudes."""
+        self._require_cell(column, row)
+        from osgeo import osr
+        srs = self._dataset().GetSpatialRef()
+        if srs is None or not (srs.IsGeographic() or srs.IsProjected()):
+            raise Unsupported(f"map {self.path!r}: it has no longitudes and latitudes; accepted: a map with a CRS on a body", self.path)
+        degrees = srs.CloneGeogCS()
+        for each in (srs, degrees):
+            each.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+        x0, dx, xy, y0, yx, dy = self.geotransform
+        x, y = x0 + dx * (column + 0.5) + xy * (row + 0.5), y0 + yx * (column + 0.5) + dy * (row + 0.5)
+        longitude, latitude, _ = osr.CoordinateTransformation(srs, degrees).TransformPoint(x, y)
+        away = -1e-5 if latitude > 0.0 else 1e-5  # from the nearer pole [deg]
+        there = osr.CoordinateTransformation(degrees, srs).TransformPoint(longitude, latitude + away)
+        north = np.arctan2((there[0] - x) / away, (there[1] - y) / away)
+        return float(-np.degrees(north) % 360.0)
+
+    def _require_cell(self, column, row):
         if not (0 <= column < self.columns and 0 <= row < self.rows):
             raise InvalidArgument(f"map {self.path!r}: the cell is {column}, {row}; accepted: columns 0 to {self.columns - 1} and "
                                   f"rows 0 to {self.rows - 1}", self.path)
-        return np.asarray(self._dataset().ReadAsArray(column, row, 1, 1)).reshape(-1)
 
     @property
     def metadata(self):

@@ -28,7 +28,8 @@ class Maps:
 
         terrain: a Terrain or its name. Its ground, with the body's curvature where it is on its body, is the only obstacle.
         path: of a new file (on the server's disk with a RemoteSession). height: of the observers above the ground [m], 0 to
-        1e6. azimuths: evenly spaced, 1 to 3600, clockwise from true north on a body, and from the map's Y axis on a plane.
+        1e6. azimuths: evenly spaced, 1 to 3600, clockwise from true north, and from the map's Y axis on a plane and in a polar
+        projection (MapFile.first_deg).
         extent: map coordinates (left, top, right, bottom); default: the whole terrain. cell_size: in map units, brought to a
         whole number of the terrain's posts, 1 to 64; 0: the terrain's pixels.
 

@@ -511,9 +511,11 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
   const Chart& chart = *this->Active_;
   const bool labels = (features & SurfaceShaders::Label) != 0;
   const ClipmapStyle& style = this->Style_;
-  const bool pole = chart.placement.GetKind() == PostPlacement::Kind::Pole;
-  // Longitude jumps within a triangle at a pole: there the texture's place is found a pixel.
-  const bool poleTexture = pole && (features & SurfaceShaders::Texture) != 0;
+  // Longitude jumps within a triangle at a pole: there the place in a texture over a degree grid is
+  // found a pixel.
+  const bool poleTexture = chart.placement.GetKind() == PostPlacement::Kind::Pole &&
+                           this->Terrain_->Placement().GetKind() == PostPlacement::Kind::Sphere &&
+                           (features & SurfaceShaders::Texture) != 0;
   const bool colors = !labels && (features & SurfaceShaders::Angles) == 0;
   const bool tracks = colors && this->ShowsTracks(); // what mixes colours costs time elsewhere
   const bool layers = colors && this->Layers_.Shown();

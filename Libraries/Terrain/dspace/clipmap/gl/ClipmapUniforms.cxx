@@ -225,18 +225,21 @@ void ClipmapUniforms::SetPlacement() const {
     program->SetUniformf("cameraLatitudeAngle", float(angles.y()));
     return;
   }
-  const double sign = placement.South() ? -1.0 : 1.0; // the pole's axes in the body's
-  Set(program, "poleXVC", Eigen::Vector3d(L.col(0)));
-  Set(program, "poleYVC", Eigen::Vector3d(sign * L.col(1)));
-  Set(program, "poleZVC", Eigen::Vector3d(sign * L.col(2)));
+  Set(program, "poleXVC", Eigen::Vector3d(L * placement.FromChart(Eigen::Vector3d::UnitX())));
+  Set(program, "poleYVC", Eigen::Vector3d(L * placement.FromChart(Eigen::Vector3d::UnitY())));
+  Set(program, "poleZVC", Eigen::Vector3d(L * placement.FromChart(Eigen::Vector3d::UnitZ())));
   Set(program, "cameraPlane", placement.OnPlaneOfPole(posts.head<2>()));
   program->SetUniformf("planeBase", float(placement.PlaneStep()));
   if (program->IsUniformUsed("poleSign")) {
-    program->SetUniformf("poleSign", float(sign));
+    program->SetUniformf("poleSign", placement.South() ? -1.0f : 1.0f);
+  }
+  if (program->IsUniformUsed("poleTurn")) {
+    Set(program, "poleTurn",
+        Eigen::Vector2d(std::cos(placement.East()), std::sin(placement.East())));
   }
   if (program->IsUniformUsed("degreesTexture")) {
     // The texture's place of a longitude and latitude, through the degree grid's posts.
-    const PostPlacement& grid = this->Terrain_.Placement();
+    const PostPlacement& grid = this->Terrain_.Placement(); // a Sphere
     Eigen::Affine2d posts_A = Eigen::Affine2d::Identity();
     posts_A.linear() = grid.Step().cwiseInverse().asDiagonal();
     posts_A.translation() = -grid.First().cwiseQuotient(grid.Step());
