@@ -168,7 +168,7 @@ def test_a_lit_panel_in_an_eclipse(capsys, moon):
 
 
 def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
-    """Near the south pole of a polar map the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it; on the body,
+    """Near the south pole of a polar map, places are in degrees, and the Sun's azimuth, clockwise from the map's Y axis, is the longitude below it; on the body,
     clockwise from true north, that longitude less the site's."""
     path = tmp_path / "pole.tif"
     data = gdal.GetDriverByName("GTiff").Create(str(path), 100, 100, 1, gdal.GDT_Float32)
@@ -189,6 +189,14 @@ def test_a_lit_panel_at_a_time_on_a_projected_map(capsys, tmp_path):
             assert found["on_body"] == (not plane)
             off = (found["sun_azimuth_deg"] - longitude + (0.0 if plane else east) + 180.0) % 360.0 - 180.0
             assert off == pytest.approx(0.0, abs=0.05), (east, south, plane)
+    for site, says in (("-89.99,50", "place -89.99,50 (LON,LAT) is off the terrain: it lies at map x -"), ("2000,-3000", "accepted: LON,LAT, longitude"),
+                       ("-89.99,146", "accepted: LON,LAT, longitude (east) -360 to 360 and latitude -90 to 90")):
+        for word, option, more in (("horizon", "--site", ()), ("viewshed", "--site", ("--out", tmp_path / "v.tif")), ("sites", "--site", ("--radius", "100", "--from",
+                                   "2026-01-01", "--to", "2026-02-01"))):
+            code, _, err = run(capsys, word, "--terrain", path, option, site, *more)
+            assert code == 1 and says in err, (word, site, err)
+    code, _, err = run(capsys, "power", "--terrain", path, "--site", "50,-89.99", "--panel", "1", "--time", "2026-02-01,2026-01-01")
+    assert code == 1 and "--time '2026-02-01,2026-01-01': the end is not after the start" in err
 
 
 def test_plots(capsys, wall, tmp_path):

@@ -127,7 +127,8 @@ def test_info_of_real_rasters():
     cube, = info(real("moon_lola_ldem4_reduced.cub"))
     assert cube["driver"] == "ISIS3" and abs(cube["statistics"]["mean_m"]) < 2000
     pole, = info(real("moon_npole_stereo_33.tif"))
-    assert pole["latitude"][0] == pytest.approx(87.56, abs=0.01) and "refused" in pole["body"]
+    assert pole["latitude"][0] == pytest.approx(87.56, abs=0.01) and not pole["body"]["closed"]
+    assert pole["body"]["levels"][0]["posts"] == [33, 33]
     everything = info(*sorted(DATA.glob("*.tif")))
     assert [pathlib.Path(found["path"]).suffix for found in everything] == [".tif"] * len(everything)
 
@@ -279,6 +280,9 @@ def test_perspective_and_image(tmp_path):
                         "--eye", f"{longitude:.9f},{latitude:.9f},3",
                         "--target", f"{longitude:.9f},{latitude + 0.001:.9f},0")
     assert "height 3 m" in told and near[-20:].min() > 0
+    away = run("terrain", "render", FIELD, "--out", tmp_path / "a.png", "--view", "perspective", "--size", "60x40", "--eye",
+               f"{longitude:.9f},{latitude:.9f},300", "--target", f"{longitude:.9f},{latitude:.9f},900")
+    assert "0 triangles" in away.stdout and "no ground is in view" in away.stderr
 
 
 def test_layers_in_the_order_given(tmp_path):

@@ -317,6 +317,15 @@ def test_bad_input_is_named(rover, tmp_path):
     (tmp_path / "bad.urdf").write_text("<robot><link")
     with pytest.raises(ValueError, match="bad.urdf"):
         load_vehicle(tmp_path / "bad.urdf")
+    cart = "".join(f'<link name="wheel{k}"><visual><geometry><cylinder radius="0.2" length="0.1"/></geometry></visual></link>'
+                   f'<joint name="wheel{k}" type="continuous"><parent link="base"/><child link="wheel{k}"/><axis xyz="0 1 0"/>'
+                   f'<origin xyz="{x} {y} 0"/></joint>' for k, (x, y) in enumerate(((1, 1), (1, -1), (-1, 1), (-1, -1))))
+    (tmp_path / "cart.urdf").write_text(f'<robot name="cart"><link name="base"/>{cart}</robot>')
+    with pytest.raises(InvalidArgument, match="no suspension is recognised; accepted: six wheels on two rockers and two bogies, or four"):
+        load_vehicle(tmp_path / "cart.urdf")
+    text = URDF.read_text().replace('<visual><geometry><mesh filename="wheel.glb"/></geometry></visual>', "")
+    (tmp_path / "shown.urdf").write_text(text.replace("collision>", "visual>"))
+    assert [(wheel.radius, wheel.width) for wheel in load_vehicle(tmp_path / "shown.urdf").suspension.wheels] == 6 * [(RADIUS, 0.24)]
     (tmp_path / "frames.json").write_text("{}")
     with pytest.raises(ValueError, match="frames"):
         load_vehicle(tmp_path)

@@ -263,6 +263,7 @@ def test_a_polar_raster_on_its_body(scene, tmp_path):
     ({"extent": (1.0, 2.0)}, dspace.InvalidArgument, "left, top, right, bottom"),
     ({"extent": (500.0, 600.0, 510.0, 590.0)}, dspace.InvalidArgument, "no cell of the map lies on its data"),
     ({"cell_size": 100.0}, dspace.InvalidArgument, "accepted: up to 64"),
+    ({"cell_size": 0.4}, dspace.InvalidArgument, "its posts are 1 apart; accepted: that or more, or 0"),
     ({"terrain": "none"}, dspace.NotFound, "terrain 'none'"),
     ({"terrain": 3}, dspace.WrongType, "the terrain is 3"),
     ({"progress": 3}, dspace.WrongType, "progress is 3"),

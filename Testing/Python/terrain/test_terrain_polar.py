@@ -86,6 +86,18 @@ def test_places_heights_and_normals(polar, terrain):
     located = terrain.locate(points)
     np.testing.assert_allclose(polar.map(points), map, rtol=0, atol=1e-5)
     np.testing.assert_allclose(located.body_fixed, points, rtol=0, atol=1e-6)
+    x, y, z = points.T
+    longitude, latitude = np.degrees(np.arctan2(y, x)), np.degrees(np.arctan2(z, np.hypot(x, y)))
+    named = terrain.locate(np.column_stack((longitude + 360.0, latitude, heights)), degrees=True)
+    np.testing.assert_allclose(named.map, np.column_stack((map, heights)), rtol=0, atol=1e-5)
+    np.testing.assert_allclose(named.body_fixed, points, rtol=0, atol=1e-6)
+    site = terrain.site(longitude.reshape(2, -1), latitude.reshape(2, -1), 2.0, degrees=True)
+    np.testing.assert_allclose(np.column_stack((site.x.ravel(), site.y.ravel())), map, rtol=0, atol=1e-5)
+    assert site.shape == (2, 1000) and (site.height == 2.0).all()
+    with pytest.raises(dspace.InvalidArgument, match="a latitude is 146.31; accepted: -90 to 90 degrees"):
+        terrain.site(-89.9, 146.31, degrees=True)
+    with pytest.raises(dspace.InvalidArgument, match="map and degrees are both set"):
+        terrain.locate([[0, 0, 0]], map=True, degrees=True)
     # Two directions along the facets, by differences of the independent places.
     inside = np.hypot(*((map - polar.corner) / PIXEL % 1 - 0.5).T) > 0.1
     steps = [polar.points(map + d, polar.heights(map + d)) - points for d in ((0.5, 0), (0, 0.5))]
@@ -212,6 +224,15 @@ def test_rasters_that_cannot_stand_there(scene, tmp_path):
         srs = osr.SpatialReference()
         srs.ImportFromProj4(text)
         rejected(dspace.errors.Unsupported, match, srs=srs)
+
+
+def test_a_raster_that_states_no_place(scene, tmp_path):
+    path = tmp_path / "plain.tif"
+    data = gdal.GetDriverByName("GTiff").Create(str(path), 20, 20, 1, gdal.GDT_Float32)
+    data.GetRasterBand(1).WriteArray(np.zeros((20, 20), np.float32))
+    data = None
+    with pytest.raises(dspace.errors.Unsupported, match="does not state where its pixels lie.*gdal_translate -a_srs"):
+        scene.add_terrain(path, on_body=True, crs=f"+proj=stere +lat_0=-90 +R={MOON}", pixel_size=100)
 
 
 def test_a_real_raster_near_the_north_pole(scene):

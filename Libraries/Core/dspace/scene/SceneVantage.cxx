@@ -13,9 +13,14 @@ template<class Cameras> auto FindCamera(Cameras& cameras, const std::string& nam
                       [&](const Camera& camera) { return camera.name == name; });
 }
 
-[[noreturn]] void NoSuchCamera(const std::string& vantage, const std::string& camera) {
+[[noreturn]] void NoSuchCamera(const SceneVantage& vantage, const std::string& camera) {
+  std::string names;
+  for (const std::string& name : vantage.CameraNames()) {
+    names += (names.empty() ? "'" : ", '") + name + "'";
+  }
   throw Error(Error::Kind::NotFound, "camera '" + camera + "'",
-              "vantage '" + vantage + "' has none of this name");
+              "vantage '" + vantage.Name() + "' has none of this name; accepted: " +
+                  (names.empty() ? "a camera that was added" : names));
 }
 
 } // namespace
@@ -38,7 +43,7 @@ void SceneVantage::SetCamera(const Camera& camera) {
 void SceneVantage::RemoveCamera(const std::string& name) {
   const auto found = FindCamera(this->Cameras_, name);
   if (found == this->Cameras_.end()) {
-    NoSuchCamera(this->Name_, name);
+    NoSuchCamera(*this, name);
   }
   if (name == this->Active_ && this->Cameras_.size() > 1) {
     Reject("camera '" + name + "'", "it is the active one of vantage '" + this->Name_ +
@@ -57,7 +62,7 @@ void SceneVantage::SetActiveCamera(const std::string& name) {
 const Camera& SceneVantage::GetCamera(const std::string& name) const {
   const auto found = FindCamera(this->Cameras_, name);
   if (found == this->Cameras_.end()) {
-    NoSuchCamera(this->Name_, name);
+    NoSuchCamera(*this, name);
   }
   return *found;
 }

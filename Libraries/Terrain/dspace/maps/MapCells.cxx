@@ -24,6 +24,11 @@ MapCells FindCells(const MapGround& ground, const std::optional<std::array<doubl
   const PostLattice& lattice = ground.pyramid->Lattice();
   const double post = std::sqrt(std::abs(ground.postToMap.linear().determinant())); // map units
   MapCells cells;
+  if (spacing > 0.0 && spacing < 0.5 * post) {
+    Reject(ground.name, "the spacing of the cells is " + NumberText(spacing) +
+                            " map units, but its posts are " + NumberText(post) +
+                            " apart; accepted: that or more, or 0 (its pixels)");
+  }
   const double every = spacing > 0.0 ? std::max(1.0, std::round(spacing / post))
                                      : std::min(ground.postsAPixel, MapCells::MostEvery);
   if (every > MapCells::MostEvery) {

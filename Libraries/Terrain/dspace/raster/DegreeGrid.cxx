@@ -89,9 +89,14 @@ bool Rotated(const ElevationInfo& info) {
 
 DegreeGrid DegreeGridOf(const ElevationInfo& info) {
   const Crs& crs = info.crs;
-  if (!crs.HasGeographic() || !info.georeferenced) {
+  if (!crs.HasGeographic()) {
     Reject(info, Error::Kind::Unsupported,
            std::string("it has no longitude and latitude; ") + AcceptedOnBody);
+  }
+  if (!info.georeferenced) {
+    Reject(info, Error::Kind::Unsupported,
+           "it does not state where its pixels lie on the map; accepted on a body is a raster that "
+           "does (gdal_translate -a_srs CRS -a_ullr LEFT TOP RIGHT BOTTOM writes one)");
   }
   const BodyEllipsoid body = BodyOfRaster(info);
   const Eigen::Matrix2d m = info.pixelToMap.linear();

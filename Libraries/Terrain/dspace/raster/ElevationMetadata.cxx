@@ -236,7 +236,9 @@ void ReadVertical(GDALRasterBand& band, const ElevationOptions& options, Elevati
         !std::isfinite(info.verticalOffset))
       Reject(info, "its scale " + std::to_string(scale) + " or offset " + std::to_string(offset) +
                        " is not usable; give them by hand");
-    if (info.unit.empty())
+    const double radius = info.crs.GetAxes().semiMajor; // an offset of which is in metres
+    if (info.unit.empty() &&
+        !(radius > 0.0 && std::abs(info.verticalOffset - radius) < 0.1 * radius))
       info.warnings.push_back(
           "the unit of height is not stated: metres are assumed; if that is not "
           "so, give the vertical scale");

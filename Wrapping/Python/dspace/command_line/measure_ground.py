@@ -126,14 +126,17 @@ class MeasuredGround:
         if self.terrain is None:
             raise Failed(f"{self._recording}: the scene has no terrain; accepted: frames as places")
         x, y, height = place
-        if self.crs and not self.crs[0].IsGeographic():
-            _, osr = gdal_modules()
-            x, y, _ = osr.CoordinateTransformation(self.crs[1], self.crs[0]).TransformPoint(x, y)
-        elif self.crs:  # the turn of the longitude that the raster has
-            left, _, right, _ = self.terrain.map_extent
-            middle = 0.5 * (left + right)
-            x = middle + (x - middle + 180.0) % 360.0 - 180.0
-        return self.terrain.site(x, y, height)
+        if not self.crs:
+            return self.terrain.site(x, y, height)
+        if not (abs(x) <= 360.0 and abs(y) <= 90.0):
+            raise Failed(f"place {x:.9g},{y:.9g}: accepted: LON,LAT, longitude (east) -360 to 360 and latitude -90 to 90 [deg]")
+        site = self.terrain.site(x, y, height, degrees=True)
+        left, top, right, bottom = self.terrain.map_extent
+        if not self.crs[0].IsGeographic() and not (min(left, right) <= site.x <= max(left, right)
+                                                   and min(top, bottom) <= site.y <= max(top, bottom)):
+            raise Failed(f"place {x:.9g},{y:.9g} (LON,LAT) is off the terrain: it lies at map x {float(site.x):.9g}, y {float(site.y):.9g}; "
+                         f"accepted: map x {left:.9g} to {right:.9g}, y {bottom:.9g} to {top:.9g}")
+        return site
 
     def placed(self, frame):
         """The pose of a frame in the root, as a matrix (4, 4)."""

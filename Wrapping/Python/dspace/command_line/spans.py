@@ -39,6 +39,8 @@ class Span:
         if len(parts) not in (2, 3):
             raise Failed(f"--time {options.time!r}: accepted: T0,T1[,STEP]")
         self.start, self.end = (float(time) for time in scene.tdb(parts[:2]))
+        if not self.start < self.end:
+            raise Failed(f"--time {options.time!r}: the end is not after the start; accepted: T0,T1[,STEP]")
         try:
             self.step = float(parts[2]) if len(parts) == 3 else step
         except ValueError:

@@ -189,10 +189,8 @@ def describe_field(gdal, terrain, name, given, warned):
 
 # --- How it is drawn -------------------------------------------------------------------------------
 
-def pyramid(info, options):
+def pyramid(info, options, periodic=False):
     cells = options.level_size or 124
-    around = info.resampled_columns or info.columns
-    periodic = info.on_body and info.post_columns == around << info.subdivisions
     levels = []
     for level in range(info.levels):
         step = 1 << level
@@ -215,7 +213,9 @@ def on_body(dspace, scene, path, options):
         terrain, _ = add(scene, path, options, name="body", on_body=True)
     except dspace.Error as error:
         return {"refused": str(error)}
-    return pyramid(terrain._info(), options)
+    left, top, right, bottom = terrain.map_extent
+    edges = terrain.from_map([[x, 0.5 * (top + bottom), 0.0] for x in (left, right)])
+    return pyramid(terrain._info(), options, periodic=np.linalg.norm(edges[1] - edges[0]) < 1e-6 * np.linalg.norm(edges[0]))
 
 
 # --- As text ---------------------------------------------------------------------------------------

@@ -216,5 +216,8 @@ def draw_perspective(session, scene, ground, options):
     light_view(view, options)
     picture = view.image().copy()
     place = ground.terrains[0].to_map(np.array([eye]))[0]
+    triangles = session.statistics["triangles_drawn"]
+    if not triangles:
+        print("dspace: note: no ground is in view; --eye and --target are LON,LAT,H", file=sys.stderr)
     return picture, (f"seen from map {place[0]:.9g}, {place[1]:.9g}, height {place[2]:.6g} m; "
-                     f"{session.statistics['triangles_drawn']} triangles")
+                     f"{triangles} triangles")

@@ -44,6 +44,7 @@ class Description:
     joints: list
     meshes: dict = field(default_factory=dict)  # link -> [(path, 4 × 4 in the link, scale (3,))]
     cylinders: dict = field(default_factory=dict)  # link -> (radius, length) of a collision cylinder
+    shown_cylinders: dict = field(default_factory=dict)  # of a visual one
     parts: list = field(default_factory=list)  # frames.json only
 
     def joint_of(self, link):
@@ -137,9 +138,10 @@ def read_urdf(path):
                 file = path.parent / mesh.get("filename", "").replace("package://", "")
                 scale = _floats(mesh.get("scale", "1 1 1"), 3, f"{path}: link '{name}'")
                 d.meshes.setdefault(name, []).append((file, matrix, scale))
-        cylinder = e.find("collision/geometry/cylinder")
-        if cylinder is not None:
-            d.cylinders[name] = (float(cylinder.get("radius")), float(cylinder.get("length")))
+        for cylinders, place in ((d.cylinders, "collision"), (d.shown_cylinders, "visual")):
+            cylinder = e.find(f"{place}/geometry/cylinder")
+            if cylinder is not None:
+                cylinders[name] = (float(cylinder.get("radius")), float(cylinder.get("length")))
     return d
 
 

@@ -113,12 +113,14 @@ def _rover_axes(description, poses, spins, lateral):
 
 
 def _wheel_size(description, joint):
-    """Returns radius and width of a wheel from its collision cylinder, or from its mesh."""
+    """Returns radius and width of a wheel from its collision cylinder, its mesh, or its visual cylinder."""
     if joint.child in description.cylinders:
         return description.cylinders[joint.child]
     v = description.link_vertices(joint.child)
+    if not len(v) and joint.child in description.shown_cylinders:
+        return description.shown_cylinders[joint.child]
     if not len(v):
-        raise InvalidArgument(f"{description.path}: wheel '{joint.child}' has neither a collision cylinder nor "
+        raise InvalidArgument(f"{description.path}: wheel '{joint.child}' has neither a cylinder nor "
                          "a mesh that can be measured; one of them gives its radius")
     along = v @ joint.axis
     return (float(np.linalg.norm(v - along[:, None] * joint.axis, axis=1).max()), float(np.ptp(along)))

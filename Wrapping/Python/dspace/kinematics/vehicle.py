@@ -247,7 +247,8 @@ def load_vehicle(path, bounds=None, scale=1.0, up=None):
     """Returns the vehicle in a model file.
 
     A URDF or a frames.json (or a folder that holds one) in which a suspension is recognised gives a
-    RockerBogie or IndependentSuspension; everything else a CarriedModel, whose bounds are `bounds`
+    RockerBogie (six wheels on two rockers and two bogies) or an IndependentSuspension (four steered wheels on parallel
+    arms of one length); everything else a CarriedModel, whose bounds are `bounds`
     (minimum, maximum) in the file's coordinates, or are read from .gltf, .glb and .obj. `scale` and
     `up` apply to carried models; `up` is by default "y" for glTF and VRML, as those formats define,
     else "z". Raises dspace.NotFound, or dspace.InvalidArgument naming the file and what is wrong."""
@@ -264,7 +265,9 @@ def load_vehicle(path, bounds=None, scale=1.0, up=None):
             kind = RockerBogie if suspension.kind == "rocker-bogie" else IndependentSuspension
             return kind(description, suspension)
         if bounds is None:
-            raise InvalidArgument(f"{path}: no suspension is recognised; pass bounds to carry the model")
+            raise InvalidArgument(f"{path}: no suspension is recognised; accepted: six wheels on two rockers and two bogies, or four "
+                                  "steered wheels on arms of one length, each wheel a revolute or continuous joint of its own; or pass "
+                                  "bounds, and the model is carried without turning wheels")
         return CarriedModel(bounds, scale, up or "z", description.name)
     if bounds is None:
         v = meshes.vertices(path)

@@ -108,7 +108,7 @@ class Movie:
         """The duration [s]: the given one, or the time of the last key."""
         last = max((key.time for view in self.views.values() for key in view.keys), default=0.0)
         if self._duration is None and not last:
-            reject("movie", "the duration", None, "seconds, where no key comes after 0 s")
+            raise InvalidArgument("movie: it has no end; accepted: a duration in seconds (duration = ...), or a key after 0 s", "movie")
         return last if self._duration is None else self._duration
 
     @property

@@ -240,11 +240,16 @@ class Terrain(Strict):
         put_targets(self._scene, message, targets, time, self._label())
         return sky_of(self._scene._execute(command))
 
-    def site(self, x, y, height=0.0):
-        """A Site: points at map x, y (longitude and latitude of a degree grid; numbers or arrays whose shapes broadcast),
-        `height` metres above the ground, 0 or more. For Scene.line_of_sight() and Scene.horizon(), which raise
-        dspace.InvalidArgument where there is no data."""
-        return Site(self, x, y, height)
+    def site(self, x, y, height=0.0, degrees=False):
+        """A Site: points at map x, y (numbers or arrays whose shapes broadcast), `height` metres above the ground, 0 or more. The
+        map of a degree grid is in longitude and latitude; with degrees=True x and y are that on any map, longitude east. For
+        Scene.line_of_sight() and Scene.horizon(), which raise dspace.InvalidArgument where there is no data."""
+        site = Site(self, x, y, height)
+        if not flag(degrees, "degrees", self._label):
+            return site
+        places = np.stack((site.x, site.y, np.zeros(site.shape)), axis=-1)
+        found = self.locate(places, degrees=True).map
+        return Site(self, found[..., 0], found[..., 1], height)
 
     def normal(self, x, y, z=None, map=False):
         """Returns the unit normals (..., 3) of the surface, in the terrain's frame, at x, y as for height()."""
@@ -323,9 +328,10 @@ class Terrain(Strict):
                                   "(..., 3)", self._label())
         return points
 
-    def locate(self, points, map=False):
-        """Returns the Coordinates of points (..., 3) in the terrain's frame, or with map=True of map x, y and height
-        above the datum: longitude, latitude and height on the CRS's ellipsoid, body-fixed, map and root coordinates.
+    def locate(self, points, map=False, degrees=False):
+        """Returns the Coordinates of points (..., 3) in the terrain's frame; with map=True of map x, y and height above the
+        vertical datum; or with degrees=True of longitude (east), latitude and that height: longitude, latitude and height
+        on the CRS's ellipsoid, body-fixed, map and root coordinates.
 
         Longitude and latitude are those of the CRS's own geographic base. Heights above a geoid or an areoid are taken
         as heights above the ellipsoid."""
@@ -333,6 +339,7 @@ class Terrain(Strict):
         command = self._scene._command()
         command.locate_terrain.terrain = self._name
         command.locate_terrain.map = flag(map, "map", self._label)
+        command.locate_terrain.degrees = flag(degrees, "degrees", self._label)
         wire.put_array(command.locate_terrain, "point", points)
         return coordinates_of(self._scene._execute(command).coordinates.point, points.shape[:-1])
 

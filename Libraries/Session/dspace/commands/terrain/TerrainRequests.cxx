@@ -186,15 +186,23 @@ void LocateTerrain(const Context& context, v1::LocateTerrain& command) {
   const std::string label = "terrain '" + command.terrain() + "'";
   const std::size_t n = RowsOf(command.point_size(), 3, label, "point");
   RequireFinitePoints(label, command.point().data(), 3, n);
-  const Rows3 given = Eigen::Map<const Rows3>(command.point().data(), Eigen::Index(n), 3);
+  if (command.map() && command.degrees()) {
+    Reject(label, "map and degrees are both set; accepted: one of them");
+  }
+  Rows3 given = Eigen::Map<const Rows3>(command.point().data(), Eigen::Index(n), 3);
+  for (Eigen::Index i = 0; command.degrees() && i < given.rows(); ++i) {
+    const double latitude = given(i, 1);
+    Require(std::abs(latitude) <= 90.0, label, "a latitude", latitude, "-90 to 90 degrees");
+    given.row(i) = surface.GeographicToMap(given.row(i));
+  }
+  const bool map = command.map() || command.degrees();
   Rows3 other(given.rows(), 3);
   for (Eigen::Index i = 0; i < given.rows(); ++i) {
-    other.row(i) =
-        command.map() ? surface.MapToScene(given.row(i)) : surface.SceneToMap(given.row(i));
+    other.row(i) = map ? surface.MapToScene(given.row(i)) : surface.SceneToMap(given.row(i));
   }
   const FrameId frame = context.GetScene().Object(terrain.Object()).frame;
-  PutCoordinates(terrain, context.Frames().WorldPose(frame), command.map() ? other : given,
-                 command.map() ? given : other, *context.scene->sky.kernels,
+  PutCoordinates(terrain, context.Frames().WorldPose(frame), map ? other : given,
+                 map ? given : other, *context.scene->sky.kernels,
                  context.GetScene().Time(), *context.reply.mutable_coordinates());
 }
 
