@@ -29,7 +29,7 @@ OPTIONAL = {"DSPACE_CCACHE", "grass"}  # used where it is installed
 PROGRAMS = {"ffmpeg": "ffmpeg", "ffprobe": "ffmpeg", "openssl": "openssl", "ruby": "ruby-grpc",
             "protoc": "protobuf-compiler", "clang-format": "clang-format", "clang-tidy": "clang-tidy", "git": "git",
             "Xvfb": "xvfb", "xauth": "xauth", "openbox": "openbox", "glslangValidator": "glslang-tools",
-            "xdotool": "xdotool", "strace": "strace", "doxygen": "doxygen"}
+            "xdotool": "xdotool", "strace": "strace", "doxygen": "doxygen", "solve-field": "astrometry.net"}
 
 
 def listed(*kinds):

@@ -7,6 +7,9 @@ degrees high and 90 degrees of azimuth apart. What the air lifts differs by 20 a
 import math
 import os
 import pathlib
+import re
+import shutil
+import subprocess
 
 import numpy as np
 import pytest
@@ -291,3 +294,30 @@ def test_brightness_has_the_order_of_the_photograph(sky, pictures, key):
     assert 0.0 < term < 0.2
     correlation = np.corrcoef(ranks(measured), ranks(seen + term * color))[0, 1]
     assert len(stars) >= 48 and correlation >= 0.95, correlation
+
+
+def solved_by_others(picture, key, folder):
+    """The right ascension and declination [deg] of the picture's middle by astrometry.net (Lang et al. 2010) and its index of Tycho-2."""
+    cards = ["SIMPLE  =                    T", "BITPIX  =                  -32", "NAXIS   =                    2",
+             *(f"NAXIS{k}  = {size:20d}" for k, size in enumerate(SIZE, 1)), "END"]
+    path = folder / "picture.fits"
+    path.write_bytes("".join(card.ljust(80) for card in cards).ljust(2880).encode()
+                     + (picture / picture.max()).astype(">f4").tobytes().ljust(4 * SIZE[0] * SIZE[1] + 2880 - 4 * SIZE[0] * SIZE[1] % 2880, b"\0"))
+    done = subprocess.run(["solve-field", "--overwrite", "--no-plots", "--scale-units", "degwidth", "--scale-low", "10", "--scale-high", "13",
+                           "--tweak-order", "3", "--ra", f"{ROUGH[key][0]:.0f}", "--dec", f"{ROUGH[key][1]:.0f}", "--radius", "5",
+                           "--cpulimit", "60", "--dir", str(folder), str(path)],
+                          capture_output=True, text=True, timeout=200)
+    center = re.search(r"Field center: \(RA,Dec\) = \(([-0-9.]+), ([-0-9.]+)\) deg", done.stdout)
+    assert center, done.stdout[-2000:] + done.stderr[-500:]
+    return float(center.group(1)), float(center.group(2))
+
+
+@pytest.mark.parametrize("key", ROUGH)
+def test_another_program_solves_photograph_and_picture_to_one_pointing(sky, pictures, key, tmp_path):
+    if not shutil.which("solve-field"):
+        lacks("astrometry.net")
+    if not list(pathlib.Path("/usr/share/astrometry").glob("index-tycho2-1*.fits")):
+        lacks("astrometry-data-tycho2-10-19")
+    ours = pictures[key] + 1e-3 * pictures[key].max() * np.random.default_rng(1).random(SIZE[::-1])  # it asks for a sky with noise
+    places = [direction(*solved_by_others(picture, key, tmp_path)) for picture in (sky.photos[key], ours)]
+    assert math.degrees(np.linalg.norm(places[0] - places[1])) * 3600.0 < 10.0
