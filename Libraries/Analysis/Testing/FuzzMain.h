@@ -35,8 +35,14 @@ template<class Work> void Try(Work work) {
   }
 }
 
-// Runs the seeds, then 20,000 inputs of `mutate` with seed 1 (for five minutes with DSPACE_LONG);
-// or the files that it is given. The input at work is in NAME.failure of the working folder, which
+// A number of the environment.
+inline double Setting(const char* name, double otherwise) {
+  const char* given = std::getenv(name);
+  return given && *given ? std::strtod(given, nullptr) : otherwise;
+}
+
+// Runs the seeds, then 20,000 inputs of `mutate` with seed DSPACE_FUZZ_SEED (1), or with DSPACE_LONG
+// as many as there are in DSPACE_FUZZ_SECONDS (300); or the files that it is given. The input at work is in NAME.failure of the working folder, which
 // is removed when none failed.
 template<class Mutate>
 int FuzzMain(int argc, char** argv, const std::string& name, const std::vector<std::string>& seeds,
@@ -58,12 +64,13 @@ int FuzzMain(int argc, char** argv, const std::string& name, const std::vector<s
   }
   const char* given = std::getenv("DSPACE_LONG");
   const bool isLong = given && *given;
-  std::mt19937_64 random(1);
+  const double seconds = isLong ? Setting("DSPACE_FUZZ_SECONDS", 300.0) : 60.0;
+  std::mt19937_64 random(std::uint64_t(Setting("DSPACE_FUZZ_SEED", 1.0)));
   const auto began = std::chrono::steady_clock::now();
   long runs = 0;
   for (; isLong || runs < 20000; ++runs) {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - began;
-    if (spent.count() > (isLong ? 300.0 : 60.0)) {
+    if (spent.count() > seconds) {
       break;
     }
     const std::string bytes = mutate(random);
