@@ -41,9 +41,9 @@ inline double Setting(const char* name, double otherwise) {
   return given && *given ? std::strtod(given, nullptr) : otherwise;
 }
 
-// Runs the seeds, then 20,000 inputs of `mutate` with seed DSPACE_FUZZ_SEED (1), or with DSPACE_LONG
-// as many as there are in DSPACE_FUZZ_SECONDS (300); or the files that it is given. The input at work is in NAME.failure of the working folder, which
-// is removed when none failed.
+// Runs the seeds, then 20,000 inputs of `mutate` with seed DSPACE_FUZZ_SEED (1), or with
+// DSPACE_LONG as many as there are in DSPACE_FUZZ_SECONDS (300); or the files that it is given. The
+// input at work is in NAME.failure of the working folder, which is removed when none failed.
 template<class Mutate>
 int FuzzMain(int argc, char** argv, const std::string& name, const std::vector<std::string>& seeds,
              Mutate mutate) {

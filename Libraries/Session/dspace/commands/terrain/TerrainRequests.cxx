@@ -202,8 +202,8 @@ void LocateTerrain(const Context& context, v1::LocateTerrain& command) {
   }
   const FrameId frame = context.GetScene().Object(terrain.Object()).frame;
   PutCoordinates(terrain, context.Frames().WorldPose(frame), map ? other : given,
-                 map ? given : other, *context.scene->sky.kernels,
-                 context.GetScene().Time(), *context.reply.mutable_coordinates());
+                 map ? given : other, *context.scene->sky.kernels, context.GetScene().Time(),
+                 *context.reply.mutable_coordinates());
 }
 
 void DescribeTerrain(const Context& context, v1::DescribeTerrain& command) {
