@@ -133,6 +133,24 @@ def test_projected_maps_are_measured_on_the_ellipsoid(scene, tmp_path):
     assert area.area == pytest.approx(2 * np.pi * MOON ** 2 * (1 - np.cos(c)), rel=5e-5)
 
 
+@pytest.mark.parametrize("on_body", (False, True), ids=("plane", "body"))
+def test_means_over_a_polar_map_are_those_of_the_sphere(scene, tmp_path, on_body):
+    """A cap of 44 degrees whose height is the distance from the pole in the map: the mean over the sphere, not over the map."""
+    step, side = 20e3, 160
+    at = (np.arange(side) - 0.5 * (side - 1)) * step
+    rho = np.hypot(at[None, :], at[:, None])
+    path = write_moon(tmp_path / "cap.tif", "+proj=stere +lat_0=90", (at[0] - 0.5 * step, step, 0, -at[0] + 0.5 * step, 0, -step),
+                      (rho * 1e-3).astype(np.float32))
+    cap = scene.add_terrain(path, name="cap", mode="clipmap", on_body=on_body)
+    edge = 2 * MOON * np.tan(np.radians(44) / 2)
+    angle = np.linspace(0, 2 * np.pi, 720, endpoint=False)
+    found = scene.measure_area(edge * np.column_stack((np.cos(angle), np.sin(angle))), cap)
+    c = np.linspace(0, np.radians(44), 200001)
+    weight = np.sin(c)
+    expected = np.trapz(weight * 2e-3 * MOON * np.tan(c / 2), c) / np.trapz(weight, c)
+    assert found.mean_height == pytest.approx(expected, rel=2e-3)
+
+
 def test_a_profile_has_the_pixels_of_a_real_raster(scene):
     path = real("mars_gale_mola_128ppd_m.tif")
     data = gdal.Open(str(path))

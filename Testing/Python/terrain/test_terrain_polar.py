@@ -203,6 +203,50 @@ def test_pictures_show_the_ground_where_it_is(scene, polar, terrain):
         assert np.median(np.abs(above[inside])) < 0.05 * pixel
 
 
+@pytest.mark.parametrize("pixel, middle, turn, unit", [(1000.0, (8e5, 9e5), 0, 1), (4000.0, (1.2e6, -1.1e6), 0, 1),
+                                                       (1000 / 3, (3000, -2000), 35, 1), (120.0, (3e5, 3e5), 90, 1000)])
+def test_horizon_maps_against_rays(scene, tmp_path, pixel, middle, turn, unit):
+    """Also on rotated rasters and in kilometres, whose sphere of heights is another one."""
+    n, datum = 150 if pixel < 500.0 else 40, MOON + 500.0
+    srs = osr.SpatialReference()
+    srs.ImportFromProj4(f"+proj=stere +lat_0=-90 +lon_0=20 +R={MOON} +units={'m' if unit == 1 else 'km'} +no_defs")
+    y, x = np.mgrid[0:n, 0:n]
+    z = pixel * (1.5 * np.sin(x / 9) * np.cos(y / 7) + np.sin((x + y) / 23))
+    c, s = np.cos(np.radians(turn)) * pixel / unit, np.sin(np.radians(turn)) * pixel / unit
+    corner = np.array(middle) / unit - 0.5 * n * np.array((c + s, s - c))
+    data = gdal.GetDriverByName("GTiff").Create(str(tmp_path / "wide.tif"), n, n, 1, gdal.GDT_Float32)
+    data.SetProjection(srs.ExportToWkt())
+    data.SetGeoTransform((corner[0], c, s, corner[1], s, -c))
+    data.SetMetadataItem("VERTICAL_DATUM", f"sphere:{datum:.0f}")
+    data.GetRasterBand(1).SetUnitType("m")
+    data.GetRasterBand(1).WriteArray(z.astype("f4"))
+    data = None
+    terrain = scene.add_terrain(tmp_path / "wide.tif", name="wide", on_body=True)
+    made = scene.horizon_map(terrain, tmp_path / "horizons.tif", azimuths=12, height=2.0)
+    assert (made.columns, made.rows) == (n, n)
+    g, random, off = made.geotransform, np.random.default_rng(5), []
+    for column, row in random.integers(12, n - 12, (25, 2)):
+        place = g[0] + g[1] * (column + 0.5) + g[2] * (row + 0.5), g[3] + g[4] * (column + 0.5) + g[5] * (row + 0.5)
+        height = float(terrain.height(*place, map=True))
+        assert height == pytest.approx(z[row, column], abs=2e-3)
+        eye = terrain.from_map([[*place, height + 2.0]])[0]
+        assert np.linalg.norm(eye) == pytest.approx(datum + height + 2.0, abs=1e-3)
+        up = eye / np.linalg.norm(eye)
+        east = np.cross((0, 0, 1), up) / np.hypot(*up[:2])
+        azimuth = np.radians(np.arange(12) * 30.0 + made.first_deg(int(column), int(row)))
+        level = np.sin(azimuth)[:, None] * east + np.cos(azimuth)[:, None] * np.cross(up, east)
+        low, high = np.full(12, -20.0), np.full(12, 70.0)
+        for _ in range(24):
+            middle_deg = 0.5 * (low + high)
+            e = np.radians(middle_deg)[:, None]
+            hit = np.isfinite(terrain.intersect(np.tile(eye, (12, 1)), np.cos(e) * level + np.sin(e) * up))
+            low, high = np.where(hit, middle_deg, low), np.where(hit, high, middle_deg)
+        found = made.horizon(int(column), int(row))
+        seen = (found > -80) & (low > -19)  # else nothing of the raster stands there
+        off.extend(np.abs(found - low)[seen])
+    assert len(off) > 250 and np.median(off) < 0.001 and np.quantile(off, 0.99) < 0.005 and np.max(off) < 0.01, (np.median(off), np.quantile(off, 0.99), np.max(off))
+
+
 def test_rasters_that_cannot_stand_there(scene, tmp_path):
     polar = Polar(tmp_path / "polar.tif", *PLACES["south"])
 
@@ -215,9 +259,9 @@ def test_rasters_that_cannot_stand_there(scene, tmp_path):
             scene.add_terrain(polar.path, name="polar", on_body=True)
         assert not scene.terrains
 
-    rejected(ValueError, "mirrored", transform=(-100000, PIXEL, 0, -100000, 0, PIXEL))
-    rejected(ValueError, "no squares", transform=(-100000, PIXEL, 0, 100000, 0, -PIXEL - 1))
-    rejected(ValueError, "125", transform=(-1e7, 50000, 0, 1e7, 0, -50000))
+    rejected(dspace.errors.Unsupported, "mirrored", transform=(-100000, PIXEL, 0, -100000, 0, PIXEL))
+    rejected(dspace.errors.Unsupported, "no squares", transform=(-100000, PIXEL, 0, 100000, 0, -PIXEL - 1))
+    rejected(dspace.errors.Unsupported, "125", transform=(-1e7, 50000, 0, 1e7, 0, -50000))
     for text, match in (("+proj=stere +lat_0=-80 +R=1737400", "another kind"),
                         ("+proj=stere +lat_0=-90 +a=3396190 +b=3376200", "ellipsoid"),
                         ("+proj=laea +lat_0=-90 +R=1737400", "another kind")):

@@ -228,6 +228,77 @@ TEST(PolarTerrain, RaysCrossTheLinesOfTheLatticeWhereTheyShould) {
   EXPECT_GT(found, 2000);
 }
 
+// A line of the lattice that passes the pole by less than rounding, as pixels of a third of a metre
+// make it, is the line through the pole.
+TEST(PolarTerrain, RaysCrossLinesThatNearlyMeetThePole) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  PostLattice lattice;
+  lattice.columns = lattice.rows = 2001;
+  int found = 0;
+  for (const double off : {0.0, 1e-16, 1e-13, -1e-12, 1e-9, -1e-6, 1e-3}) {
+    const PostPlacement placement = PostPlacement::AtPole(
+        true, 0.5 * 100.0 / Moon, {1000.0 + off, 1000.0 - off}, 10.0, BodyEllipsoid(Moon, Moon));
+    for (int i = 0; i < 500; ++i) {
+      const auto place = [&] {
+        return placement.ToScene({1000.0 + 900.0 * unit(random), 1000.0 + 900.0 * unit(random)},
+                                 2000.0 * unit(random));
+      };
+      const Eigen::Vector3d origin = place();
+      const Eigen::Vector3d end = place();
+      const RayPath path(placement, lattice, origin, (end - origin).normalized(),
+                         (end - origin).norm(), -3000.0, 3000.0);
+      for (const int axis : {0, 1}) {
+        std::vector<double> crossings;
+        if (axis == 0) {
+          path.ColumnCrossings(1000.0, crossings);
+        } else {
+          path.RowCrossings(1000.0, crossings);
+        }
+        const auto beyond = [&](double t) { return path.Post(t, 0.0)[axis] > 1000.0; };
+        if (beyond(path.First()) != beyond(path.Last())) {
+          ++found;
+          ASSERT_TRUE(std::any_of(crossings.begin(), crossings.end(),
+                                  [&](double t) {
+                                    return t > path.First() && t < path.Last() &&
+                                           std::abs(path.Post(t, 0.0)[axis] - 1000.0) < 1e-8;
+                                  }))
+              << off << " " << i;
+        }
+      }
+    }
+  }
+  EXPECT_GT(found, 2000);
+}
+
+TEST(PolarTerrain, RaysStraightDownMeetTheGroundBelow) {
+  const TemporaryFolder folder;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1.0, 1.0);
+  for (const Place& place : Places) {
+    for (const double pixel : {1000.0 / 3.0, 463.0836}) {
+      const double height = 700.0;
+      const auto terrain = OpenRaster(folder, place, pixel, height);
+      for (int i = 0; i < 2000; ++i) {
+        Eigen::Vector2d map = 31.0 * pixel * Eigen::Vector2d(unit(random), unit(random));
+        if (i % 4 == 0) {
+          map[i / 4 % 2] = i % 8 == 0 ? 0.0 : 1e-9 * unit(random); // along the pole's lines
+        }
+        map += place.middle;
+        const Eigen::Vector3d origin = terrain->MapToScene({map.x(), map.y(), 20000.0});
+        Eigen::Vector3d way = -origin.normalized();
+        if (i % 3 == 0) {
+          way =
+              (way + 1e-9 * Eigen::Vector3d(unit(random), unit(random), unit(random))).normalized();
+        }
+        const RayHit hit = terrain->Intersect(origin, way); // as far as it goes
+        ASSERT_TRUE(hit.hit) << i;
+        ASSERT_NEAR(hit.distance, 20000.0 - height, 1e-5) << i;
+      }
+    }
+  }
+}
+
 TEST(PolarTerrain, RaysOnAChartOfAnEllipsoidAreRejected) {
   const PostPlacement placement =
       PostPlacement::OnPole(true, 100.0, 512.0, BodyEllipsoid(6378137.0, 6356752.3));

@@ -87,7 +87,7 @@ HorizonPath::Point HorizonPath::At(double distance) const {
 }
 
 // A chord of length d departs from a great circle that is p from the pole by d^2 / 8 p on the map
-// of a degree grid, and by less on a pole's chart.
+// of a degree grid, and by less on a pole's chart up to the equator.
 double HorizonPath::FineStep(const Point& from, double s, double post) const {
   constexpr double Bow = 8.0 * 2e-5;
   double polar = this->Placement_.Radius();

@@ -25,6 +25,7 @@ constexpr double WidestFine = 131072; // the same about a pole, with HorizonOpti
 constexpr int MostEvery = 64;
 constexpr double Polar = 87.0 * M_PI / 180.0; // latitude [rad] from which columns crowd
 constexpr double Farthest = 1.5;              // [rad] along a body
+constexpr double LaneError = 5e-4; // of a distance, by which lanes of a pole's chart differ
 constexpr float Infinite = std::numeric_limits<float>::infinity();
 
 // A place of the path of a row's first post, in posts of a level.
@@ -54,8 +55,9 @@ public:
         Lattice_(sweep.Pyramid()->Lattice()), Block_(block), Every_(every), Deadline_(Clock::now()),
         Seconds_(seconds), Report_(report) {
     this->Spacing_ = std::ldexp(1.0, block.level);
-    this->Lane_ =
-        this->Placement_.GetKind() == PostPlacement::Kind::Pole ? 0.5 * block.width * every : 0.0;
+    this->Lane_ = this->Placement_.GetKind() == PostPlacement::Kind::Pole
+                      ? 0.5 * (block.width - 1) * every
+                      : 0.0;
     const Eigen::Vector2d middle(
         double(this->Lattice_.ColumnPlace(block.level, block.column)) +
             0.5 * this->Spacing_ * block.width * every,
@@ -581,6 +583,26 @@ private:
   float Greatest_ = -Infinite;
 };
 
+// Posts of a row about `post` that may share a path, `step` posts of level 0 apart. On a degree
+// grid all may: turned about the axis it is the same path. On a pole's chart, d away in twice the
+// radius, its lengths differ by d sin c of themselves at colatitude c, and its directions by d
+// times its length in that unit.
+int SharedLanes(const PostPlacement& placement, const Eigen::Vector2d& post, double step,
+                const HorizonOptions& options) {
+  if (placement.GetKind() != PostPlacement::Kind::Pole || !options.fine) {
+    return HorizonLanes;
+  }
+  const double radius = placement.Radius();
+  const auto dip = [&](double height) {
+    return std::acos(std::clamp((radius + options.heights[0]) / (radius + height), -1.0, 1.0));
+  };
+  const double reach =
+      std::min(dip(options.heights[1]) + dip(options.heights[1] + options.above), Farthest);
+  const double colatitude = 2.0 * std::atan(placement.OnPlaneOfPole(post).norm());
+  const double most = std::max(std::sin(std::min(colatitude + reach, 0.5 * M_PI)), 0.5 * reach);
+  return std::clamp(int(2.0 * LaneError / (most * placement.PlaneStep() * step)), 1, HorizonLanes);
+}
+
 void Check(const PostBlock& block, const PostLattice& lattice, const std::string& name,
            double azimuth) {
   if (block.width < 1 || block.height < 1 || block.level < 0 || block.level >= lattice.levels) {
@@ -657,7 +679,11 @@ HorizonReport HorizonSweep::SweepParts(const PostBlock& block, int every, double
       PostBlock part = block;
       part.column = block.column + std::int64_t(c) * every;
       part.row = block.row + std::int64_t(r) * every;
-      part.width = std::min(HorizonLanes, block.width - c);
+      const Eigen::Vector2d post(double(lattice.ColumnPlace(block.level, part.column)),
+                                 double(lattice.RowPlace(block.level, part.row)));
+      const int lanes =
+          SharedLanes(this->Placement_, post, std::ldexp(every, block.level), this->Options_);
+      part.width = std::min(lanes, block.width - c);
       part.height = std::min(rows, block.height - r);
       if (!even && part.column < last && part.column + part.width > last) {
         part.width = int(last - part.column);

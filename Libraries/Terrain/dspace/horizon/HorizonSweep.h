@@ -47,7 +47,8 @@ struct HorizonReport {
 // of the Sun's disc, and in the mean a tenth of that (TestHorizonSweep measures it). The sweep goes
 // on until the greatest height could not be seen over the horizon that is already found: over a
 // body's curvature, on a plane to the end of the data. A stencil march: along a row of posts every
-// place has the same offsets and weights (within 32 posts of a pole's chart, to second order).
+// place has the same offsets and weights (within 32 posts of a pole's chart, to second order, and
+// with HorizonOptions::fine within as many as differ by 5e-4 of a distance at most).
 // Bands of distance whose greatest height cannot raise a row's horizon are skipped.
 //
 // Holes, and what lies outside the data, are no occluders. Where nothing is in sight, the tangent

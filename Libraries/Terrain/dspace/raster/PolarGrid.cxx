@@ -62,7 +62,7 @@ std::optional<PolarPlane> PlaneOf(const Crs& crs, const CrsTransform& toMap, boo
 }
 
 [[noreturn]] void Reject(const ElevationInfo& info, const std::string& message) {
-  throw Error(Error::Kind::InvalidArgument, "raster '" + info.path + "'",
+  throw Error(Error::Kind::Unsupported, "raster '" + info.path + "'",
               message + "; " + AcceptedOnBody);
 }
 

@@ -20,7 +20,7 @@ struct PolarGrid {
 
 // None for a raster of another kind: what PROJ says of the projection decides, not its name, so
 // that any scale, true latitude, false origin and unit is understood. Throws
-// Error(InvalidArgument) for one whose pixels are not square, are mirrored, or lie more than 35
+// Error(Unsupported) for one whose pixels are not square, are mirrored, or lie more than 35
 // degrees beyond the equator, and what BodyOfRaster throws.
 std::optional<PolarGrid> PolarGridOf(const ElevationInfo& info);
 

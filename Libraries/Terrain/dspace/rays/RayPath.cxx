@@ -192,48 +192,41 @@ void RayPath::RowCrossings(double row, std::vector<double>& t) const {
   }
 }
 
-// On the line at k of the plane x = k (r + z), r the distance from the centre: hence
-// x (x - 2 k z) = k^2 (x^2 + y^2).
+// On the line at k of the chart's plane, x = k (r + z), r the distance from the centre. From the
+// ray's nearest place to the centre, p away, x - k z = N + A t = k r, hence
+// (A^2 - k^2) t^2 + 2 N A t + N^2 - k^2 p^2 = 0, whose root is of k^2 (N^2 + p^2 (A^2 - k^2)): no
+// difference of large numbers.
 void RayPath::CrossingsAtPole(int axis, double line, std::vector<double>& t) const {
   const double k =
       this->Placement_.OnPlaneOfPole(Eigen::Vector2d::Constant(line))[Eigen::Index(axis)];
-  const Eigen::Vector3d& o = this->Origin_;
-  const Eigen::Vector3d& d = this->Direction_;
-  const double x = o[axis], dx = d[axis];
-  if (k == 0.0) { // through the pole
-    if (dx != 0.0) {
-      t.push_back(-x / dx);
-    }
+  const Eigen::Vector3d nearest = this->Origin_ + this->Nearest_ * this->Direction_;
+  const double p = this->NearestRadius_;
+  const double N = nearest[axis] - k * nearest.z();
+  const double A = this->Direction_[axis] - k * this->Direction_.z();
+  const double a = (A - k) * (A + k);
+  const double square = N * N + p * p * a;
+  if (square < 0.0) {
     return;
   }
-  const double square = k * k;
-  // a t^2 + 2 b t + e = 0.
-  const double a = dx * (dx - 2.0 * k * d.z()) - square * d.head<2>().squaredNorm();
-  const double b = x * dx - k * (x * d.z() + dx * o.z()) - square * o.head<2>().dot(d.head<2>());
-  const double e = x * (x - 2.0 * k * o.z()) - square * o.head<2>().squaredNorm();
-  double root = b * b - a * e;
-  if (root < -1e-12 * (b * b + std::abs(a * e))) {
-    return;
-  }
-  root = std::sqrt(std::max(root, 0.0));
-  const double q = -(b + std::copysign(root, b));
-  const auto take = [&](double at) {
-    const Eigen::Vector3d near = o + at * d;
-    if ((near[axis] - k * near.z()) * k < 0.0) {
-      return; // where -r stands for r
+  const double root = std::abs(k) * std::sqrt(square);
+  const double product = (N - k * p) * (N + k * p); // a times both roots
+  // -N A + root and -N A - root, over a, without cancellation.
+  const double sum = N * A > 0.0 ? -N * A - root : -N * A + root;
+  const double far = sum / a;
+  const double near = product / sum;
+  const bool plusIsFar = !(N * A > 0.0);
+  const auto take = [&](bool plus) {
+    const double at = plus == plusIsFar ? far : near;
+    if (std::isfinite(at)) {
+      t.push_back(this->Nearest_ + at);
     }
-    // The square lost digits: one step of Newton's method on the line's own equation.
-    const double r = near.norm();
-    const double off = near[axis] - k * (r + near.z());
-    const double rate = dx - k * (near.dot(d) / r + d.z());
-    const double better = at - off / rate;
-    t.push_back(std::isfinite(better) && std::abs(better - at) < 1.0 ? better : at);
   };
-  if (q != 0.0) {
-    take(e / q);
-  }
-  if (a != 0.0) {
-    take(q / a);
+  // Where r is -r the line is another one.
+  if (a > 0.0) {
+    take((A > 0.0) == (k >= 0.0));
+  } else if (N * k > 0.0) {
+    take(true);
+    take(false);
   }
 }
 

@@ -24,6 +24,8 @@ public:
   // The part that may meet the surface; empty where first > last.
   double First() const { return this->First_; }
   double Last() const { return this->Last_; }
+  // Where the ray is nearest to a body's centre, through which directions jump; on a plane First().
+  double Nearest() const { return this->Nearest_; }
   // From t to the distance from the origin given.
   double Distance(double t) const { return this->Entry_ + t; }
 

@@ -78,7 +78,7 @@ SurfaceRay::Hit SurfaceRay::Intersect(const RayPath& path) const {
   const PostLattice& lattice = this->Layer_->Surface().Lattice();
   const double lastColumn = double(lattice.columns - (lattice.periodic ? 0 : 1));
   const auto lastRow = double(lattice.rows - 1);
-  std::vector<double> cuts;
+  std::vector<double> cuts = {path.Nearest()};
   path.ColumnCrossings(0.0, cuts);
   path.ColumnCrossings(lastColumn, cuts);
   path.RowCrossings(0.0, cuts);

@@ -100,7 +100,7 @@ class Ground:
         x0, x1, _, _ = self.maps[0]
         if self.on_body:
             self.radius = float(np.linalg.norm(self.place((*self.middle, 0.0))))
-            metres_per_unit = math.radians(self.radius) if self.crs[0].IsGeographic() else 1.0
+            metres_per_unit = math.radians(self.radius) if self.crs[0].IsGeographic() else self.crs[0].GetLinearUnits()
         else:
             west, east, _, _ = self.terrains[0].extent
             metres_per_unit = (east - west) / (x1 - x0) if x1 > x0 else 1.0

@@ -196,8 +196,17 @@ class _Ground:
         places = places[_within(places, corners)]
         if not len(places):
             places = corners.mean(axis=0)[None]
-        weights = np.cos(np.radians(places[:, 1])) if self.is_degree_grid else np.ones(len(places))
+        if self.is_degree_grid:
+            weights = np.cos(np.radians(places[:, 1]))
+        elif self._has_degrees:  # what a map's cell covers of the body
+            a, b = (self._body(places + step) - self._body(places - step) for step in 0.01 * np.diag(high - low) / counts)
+            weights = np.linalg.norm(np.cross(a, b), axis=1)
+        else:
+            weights = np.ones(len(places))
         return places, weights / weights.sum()
+
+    def _body(self, places):
+        return self._terrain.locate(np.column_stack((places, np.zeros(len(places)))), map=True).body_fixed
 
 
 def _statistics(area, height, slope, weights):

@@ -61,9 +61,10 @@ class MapFile:
         return np.asarray(self._dataset().ReadAsArray(column, row, 1, 1)).reshape(-1)
 
     def first_deg(self, column, row):
-        """Returns the direction of the map's Y axis at a cell, clockwise from true north [deg], 0 to 360: azimuths from true north
-        are a horizon map's plus this. 0 where the map is in longitude and latitude; arbitrary at a pole itself. Raises
-        dspace.Unsupported for a map without longitudes and latitudes."""
+        """Returns the direction from which a horizon map's azimuths count at a cell, clockwise from true north [deg], 0 to 360:
+        azimuths from true north are the map's plus this. It is the map's Y axis, and of a polar raster on its body the direction
+        against its rows. 0 where the map is in longitude and latitude; arbitrary at a pole itself. Raises dspace.Unsupported for a
+        map without longitudes and latitudes."""
         self._require_cell(column, row)
         from osgeo import osr
         srs = self._dataset().GetSpatialRef()
@@ -78,7 +79,8 @@ class MapFile:
         away = -1e-5 if latitude > 0.0 else 1e-5  # from the nearer pole [deg]
         there = osr.CoordinateTransformation(degrees, srs).TransformPoint(longitude, latitude + away)
         north = np.arctan2((there[0] - x) / away, (there[1] - y) / away)
-        return float(-np.degrees(north) % 360.0)
+        rows = np.arctan2(-xy, -dy) if self.metadata.get("DSPACE_PLACEMENT", "").startswith("pole") else 0.0
+        return float(np.degrees(rows - north) % 360.0)
 
     def _require_cell(self, column, row):
         if not (0 <= column < self.columns and 0 <= row < self.rows):
