@@ -130,7 +130,7 @@ def angles_of(text, option):
 def check_sun(options):
     """Rejects wrong options of the Sun."""
     if (options.sun is None) == (options.time is None):
-        raise Failed("--sun, --time: accepted: one of them")
+        raise Failed("--sun AZ,EL, --time UTC: " + ("both are" if options.sun else "neither is") + " given; accepted: one of them")
     if options.sun is not None:
         angles_of(options.sun, "--sun")
     if options.body is not None and options.time is None:
