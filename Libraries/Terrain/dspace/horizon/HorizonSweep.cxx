@@ -600,7 +600,8 @@ int SharedLanes(const PostPlacement& placement, const Eigen::Vector2d& post, dou
       std::min(dip(options.heights[1]) + dip(options.heights[1] + options.above), Farthest);
   const double colatitude = 2.0 * std::atan(placement.OnPlaneOfPole(post).norm());
   const double most = std::max(std::sin(std::min(colatitude + reach, 0.5 * M_PI)), 0.5 * reach);
-  return std::clamp(int(2.0 * LaneError / (most * placement.PlaneStep() * step)), 1, HorizonLanes);
+  const double lanes = 2.0 * LaneError / (most * placement.PlaneStep() * step);
+  return int(std::clamp(lanes, 1.0, double(HorizonLanes)));
 }
 
 void Check(const PostBlock& block, const PostLattice& lattice, const std::string& name,
