@@ -163,7 +163,7 @@ TEST(StreamedDegrees, WhatCannotStandOnABodyIsRejected) {
   file.crs = "EPSG:4326";
   EXPECT_EQ(kindOf(file, "ellipsoid"), Error::Kind::Unsupported);
   file = globe.File();
-  file.crs = "+proj=stere +lat_0=90 +R=1737400 +units=m";
+  file.crs = "+proj=stere +lat_0=60 +R=1737400 +units=m";
   EXPECT_EQ(kindOf(file, "projection of another kind"), Error::Kind::Unsupported);
   file = globe.File();
   file.crs.clear();
