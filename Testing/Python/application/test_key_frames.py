@@ -1,4 +1,5 @@
 """Camera key frames of a recording in DspaceQt: what they make of the movie's file, and what a view shows of them."""
+import gc
 import os
 import pathlib
 import subprocess
@@ -90,6 +91,20 @@ def test_keys_are_kept_in_the_file_of_a_movie(app, run, path):
     run.close()
     again = app.open(path)
     assert [(key.time, key.run) for key in again.movie.keys] == [(0, 103), (2, 103), (8, 109)]
+
+
+def test_no_garbage_is_collected_while_the_file_is_written(app, run, path):
+    """It would be in the thread that writes, and may hold a session whose OpenGL is of another one."""
+    view = app.views["viewer:main"]
+    for time in (101.0, 103.0):
+        place(view, (0, -10, time - 100))
+        app.movie.add_key(view, time)
+        assert not gc.isenabled()
+    app.movie.flush()
+    assert gc.isenabled() and len(app.movie.keys) == 2
+    app.movie.add_key(view, 105.0)
+    app.close()
+    assert gc.isenabled()
 
 
 def test_a_movie_of_one_key_is_a_still_and_of_none_has_no_file(app, run, path):

@@ -10,6 +10,7 @@ import numpy as np
 from dspace import Movie, Pose
 from dspace._core.fields import file_path, number, reject
 from dspace._core.files import atomic_write
+from dspace.application import collector
 from dspace.errors import Error, InvalidArgument, NotFound, WrongType
 from dspace.links.watching import OWN
 from dspace.movies.edit import KeyEditor
@@ -233,6 +234,11 @@ class KeyFrames:
     def flush(self):
         """Waits until changes are in the file. Raises dspace.Io where they are not."""
         writing, self._writing = self._writing, []
+        try:
+            concurrent.futures.wait(writing)
+        finally:
+            if writing:
+                collector.resume()
         for each in writing:
             each.result()
 
@@ -255,6 +261,8 @@ class KeyFrames:
                 os.unlink(path)
             self._on_disk = _state(path)
 
+        if not self._writing:
+            collector.pause()  # while the other thread writes
         self._writing.append(self._writer.submit(write))
         if self._looking is None:
             self._looking = self._host.every(50, self._look)
@@ -263,6 +271,8 @@ class KeyFrames:
         """Tells what writing failed."""
         done = [each for each in self._writing if each.done()]
         self._writing = [each for each in self._writing if not each.done()]
+        if done and not self._writing:
+            collector.resume()
         if not self._writing and self._looking is not None:
             self._host.cancel(self._looking)
             self._looking = None
