@@ -3,9 +3,10 @@ import numpy as np
 import pytest
 
 import dspace
+from needs import needs_module
 from terrain_support import between_posts, gdal, points_of, real
 
-osr = pytest.importorskip("osgeo.osr")
+osr = needs_module("osgeo.osr", "python3-gdal")
 osr.UseExceptions()
 MOON = 1737400.0
 PIXEL, SIZE = 500.0, 401
