@@ -10,8 +10,7 @@ namespace dspace {
 // What can stand on a body, for messages.
 constexpr const char* AcceptedOnBody =
     "accepted on a body is a north-up grid in longitude and latitude, or a raster in an "
-    "equidistant "
-    "cylindrical or polar stereographic projection of a sphere; or draw it on a plane";
+    "equidistant cylindrical or polar stereographic projection of a sphere; or draw it on a plane";
 
 // Where height 0 is: the CRS's sphere, with the radius of the vertical datum if that states one, or
 // the ellipsoid of revolution of longitudes and latitudes. Throws Error(Unsupported) for an

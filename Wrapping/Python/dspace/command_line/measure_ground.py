@@ -26,8 +26,9 @@ def add_ground(parser, file_help, required=True):
     add_recording(parser, source)
     parser.add_argument("--on", metavar="NAME", help="of --recording: the terrain of places and maps (default: the scene's only one)")
     parser.add_argument("--plane", action="store_true",
-                        help="place the terrain on a plane, without the body's curvature (default: a degree grid and a polar "
-                        "stereographic raster are placed on their body, any other raster on a plane)")
+                        help="place the terrain on a plane, without the body's curvature (default: a raster is placed on its "
+                        "body if it is in longitude and latitude, or in an equidistant cylindrical or polar stereographic projection of "
+                        "a sphere, any other on a plane)")
     add_raster_options(parser)
     parser.add_argument("--json", action="store_true", help="print JSON")
     parser.add_argument("--out", metavar="FILE", help=file_help)

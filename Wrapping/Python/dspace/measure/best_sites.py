@@ -208,7 +208,7 @@ def extent_around(terrain, center, radius):
         reject(about, "the radius", radius, "a finite number of metres above 0")
     x, y = center
     middle = terrain.from_map([x, y, 0.0])
-    if not (terrain.on_body and terrain._is_degree_grid()):
+    if not (terrain.on_body and terrain._map_is_in_degrees()):
         turn = np.radians(np.arange(0.0, 360.0, 1.0))
         level = np.column_stack((np.cos(turn), np.sin(turn), 0.0 * turn))
         reach = radius / np.cos(np.radians(0.5))

@@ -142,8 +142,8 @@ class _Ground:
 
     def __init__(self, terrain):
         self._terrain = terrain
-        self._has_degrees = terrain._middle()[1] is not None
-        self.is_degree_grid = terrain._is_degree_grid()
+        in_degrees = terrain._map_is_in_degrees()
+        self._has_degrees, self.is_degree_grid = in_degrees is not None, bool(in_degrees)
 
     def _degrees(self, places):
         if self.is_degree_grid:

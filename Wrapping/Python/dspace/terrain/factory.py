@@ -56,7 +56,8 @@ class TerrainFactory:
         size; tiles are read as needed and triangles follow each camera) or "auto" (triangles for up to four million
         pixels on a plane). on_body: places the terrain on its body instead of on a plane, for degree grids of a
         sphere or an ellipsoid (WGS 84) and for equidistant cylindrical and polar stereographic projections of a sphere;
-        its frame is body-fixed (Z to the north pole, X to longitude 0, the center at the origin). level_size: cells along a side of a clipmap level (124; 252 is finer and slower). byte_budget: bytes of tiles in memory
+        its frame is body-fixed (Z to the north pole, X to longitude 0, the center at the origin). level_size: cells along
+        a side of a clipmap level (124; 252 is finer and slower). byte_budget: bytes of tiles in memory
         (256 MiB). deadline: seconds that images and queries wait for tiles (60). subdivisions: how many times the
         cells between pixels are halved (0 to 12; on a body to 24, at least as often as its size asks); wheel tracks
         (track()) need posts some centimetres apart. Triangles keep all posts in memory, 100 million at most; "auto"

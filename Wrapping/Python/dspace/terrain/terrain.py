@@ -145,18 +145,14 @@ class Terrain(Strict):
         """(left, top, right, bottom): map x, y of the outer corners of its pixels."""
         return tuple(self._info().map_extent)
 
-    def _middle(self):
-        """Map x and y of the middle of the raster, and its longitude and latitude [deg], or None without them."""
+    def _map_is_in_degrees(self):
+        """Whether map coordinates are longitude (east) and latitude [deg]; None: the map has neither."""
         left, top, right, bottom = self.map_extent
-        middle = 0.5 * (left + right), 0.5 * (top + bottom)
-        located = self.locate([[*middle, 0.0]], map=True)
-        place = float(located.longitude[0]), float(located.latitude[0])
-        return middle, place if all(map(math.isfinite, place)) else None
-
-    def _is_degree_grid(self):
-        """Whether map coordinates are longitude (east) and latitude [deg]."""
-        middle, place = self._middle()
-        return place is not None and abs((place[0] - middle[0] + 180) % 360 - 180) < 1e-9 and abs(place[1] - middle[1]) < 1e-9
+        x, y = 0.5 * (left + right), 0.5 * (top + bottom)
+        found = self.locate((x, y, 0.0), map=True)
+        if not (math.isfinite(found.longitude) and math.isfinite(found.latitude)):
+            return None
+        return abs((found.longitude - x + 180) % 360 - 180) < 1e-9 and abs(found.latitude - y) < 1e-9
 
     @property
     def overlap_columns(self):
