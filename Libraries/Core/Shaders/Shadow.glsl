@@ -106,11 +106,13 @@ float mapLit(ShadowMap map, ShadowReceiver at)
 
 // Each map takes the blockers whose penumbra it resolves, and the last one all: from x to y above the
 // receiver's plane. steep: the length of its slope. coarser: how much larger texels are.
-vec2 cascadeHeights(int k, float coarser, float depth, float steep)
+// lean: how far a blocker must rise over a steep plane, in texels along it. Ground beside the foot of a
+// wall is above the wall's plane a texel further down.
+vec2 cascadeHeights(int k, float coarser, float depth, float steep, float lean)
 {
   vec3 reaches = shadowReaches[k] * vec3(coarser, coarser, 1.0);
   float texel = 2.0 * shadowPlace[k].z / float(shadowSize) * coarser;
-  return vec2(max(depth <= reaches.z ? reaches.y : 0.0, texel * (0.5 + 0.25 * min(steep, 8.0))),
+  return vec2(max(depth <= reaches.z ? reaches.y : 0.0, texel * (0.5 + lean * min(steep, 8.0))),
     k == DSPACE_CASCADES - 1 ? 3e38 : reaches.x);
 }
 
@@ -145,7 +147,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
     ivec2 tile = ivec2(floor((at.place.xy - place.xy) * (32.0 / place.z) + 32.0)); // of 64 x 64
     float above = at.place.z - steep * 3.0 * place.z / float(shadowSize); // the texels about the place
     bool any = depth <= place.w
-      && texelFetch(shadowTops, ivec3(tile, k), 0).r > above + cascadeHeights(k, 1.0, depth, steep).x;
+      && texelFetch(shadowTops, ivec3(tile, k), 0).r > above + cascadeHeights(k, 1.0, depth, steep, 0.25).x;
     maps |= any ? 1 << k : 0;
     count += any ? 1 : 0;
 #if DSPACE_GROUNDS > 0
@@ -154,7 +156,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
     {
       int layer = k + DSPACE_CASCADES * (1 + g);
       any = g != ownGround && depth <= place.w && texelFetch(shadowTops, ivec3(tile, layer), 0).r
-        > above + cascadeHeights(k, grounds, depth, steep).x;
+        > above + cascadeHeights(k, grounds, depth, steep, 1.0).x;
       maps |= any ? 1 << layer : 0;
       count += any ? 1 : 0;
     }
@@ -177,7 +179,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
           bit = 1 << layer;
           map = ShadowMap(shadowPlace[k], shadowRange[k], groundSize,
             ivec3(k % 4 * groundSize, k / 4 * groundSize, DSPACE_CASCADES + g),
-            cascadeHeights(k, grounds, depth, steep));
+            cascadeHeights(k, grounds, depth, steep, 1.0));
         }
       }
 #endif
@@ -185,7 +187,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
       {
         bit = 1 << k;
         map = ShadowMap(shadowPlace[k], shadowRange[k], shadowSize, ivec3(0, 0, k),
-          cascadeHeights(k, 1.0, depth, steep));
+          cascadeHeights(k, 1.0, depth, steep, 0.25));
       }
     }
     maps &= ~bit;

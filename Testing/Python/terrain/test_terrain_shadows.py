@@ -349,3 +349,20 @@ def test_more_terrains_than_layers_of_maps(scene, tmp_path):
         for y, expected in ((tip + 0.5, 0.0), (tip - 0.5, 1.0)):
             row = np.argmin(np.abs(rows - y))
             assert labels[row] == floor.object.id and abs(lit[row] - expected) < 0.1, (crest, y, lit[row])
+
+
+def test_ground_does_not_shade_the_foot_of_a_wall_beside_it(scene):
+    """Boxes that stand in the ground: no ray from their sides to the Sun meets it."""
+    terrain = scene.add_terrain(FIELD, mode="clipmap", color=WHITE)
+    scene.sun.set(azimuth_deg=120, elevation_deg=30, terrain=terrain)
+    for y in (2, 3):
+        scene.add_box((0.3, 0.3, 0.3), position=(4, y, terrain.height(4, y) + 0.12), name=f"box {y}", color=WHITE)
+    low = float(terrain.height(0, 0))
+    scene.add_camera("eye", eye=(0.6, 0, low + 0.55), target=(4, 2.6, low + 0.1), fov_deg=14)
+    view = scene.add_viewport((600, 400), "eye", samples=1)
+    view.shadows = True
+    planes = view.capture(False, label=True, lit_fraction=True, incidence=True)
+    boxes = np.isin(planes["label"], [o.id for o in scene.objects.values() if o.name.startswith("box")])
+    facing = boxes & (planes["incidence"] < 85.0)
+    assert facing.sum() > 4000
+    assert (planes["lit_fraction"][facing] < 0.95).mean() < 2e-3
