@@ -4,7 +4,7 @@
 // sphere. Rays are linear in the window's coordinates, about a pivot, and lengths along them count from
 // the camera, or from the plane of the body's centre where that is far: digits are lost nowhere.
 // DSPACE_LABEL: labels. DSPACE_ANGLES: photometric angles. DSPACE_DISC: the light of a disc that is
-// only pixels wide, over what is behind it.
+// only pixels wide, over what is behind it; DSPACE_SPREAD: spread by a Gaussian.
 //DSPACE::Functions
 
 #ifdef DSPACE_LABEL
@@ -24,6 +24,9 @@ uniform vec3 textureRows; // longitude of its left edge [turns]; its rows; 1: ge
 #ifdef DSPACE_DISC
 uniform vec4 discBox; // window from the pivot: left, bottom, right, top of the body
 uniform float discDepth; // of its nearest point
+#ifdef DSPACE_SPREAD
+uniform vec2 discSpread; // 1 / (2 variance), 1 / (2 pi variance) [samples]
+#endif
 #endif
 
 vec3 bodyPlace = vec3(0.0); // of the present sample, in the body's axes [m]
@@ -89,8 +92,13 @@ void main()
 {
   vec2 window = gl_FragCoord.xy - pivot;
 #ifdef DSPACE_DISC
+#ifdef DSPACE_SPREAD
+  vec2 low = discBox.xy;
+  vec2 high = discBox.zw;
+#else
   vec2 low = max(window - 0.5, discBox.xy);
   vec2 high = min(window + 0.5, discBox.zw);
+#endif
   vec2 size = high - low;
 #ifdef DSPACE_LABEL
   // The pixel of the middle, and those whose middles it covers.
@@ -115,16 +123,26 @@ void main()
   {
     for (int i = 0; i < DSPACE_DISC; ++i)
     {
-      Hit hit = crossing(low + size * (vec2(float(i), float(j)) + 0.5) / float(DSPACE_DISC));
+      vec2 place = low + size * (vec2(float(i), float(j)) + 0.5) / float(DSPACE_DISC);
+      Hit hit = crossing(place);
       if (hit.found)
       {
-        sum += lightOf(hit, footprint);
-        covered += 1.0;
+#ifdef DSPACE_SPREAD
+        vec2 away = window - place;
+        float weight = exp(-dot(away, away) * discSpread.x) * discSpread.y;
+#else
+        float weight = 1.0;
+#endif
+        sum += weight * lightOf(hit, footprint);
+        covered += weight;
       }
     }
   }
   float share = size.x * size.y / float(DSPACE_DISC * DSPACE_DISC);
   fragColor = vec4(sum, covered) * share;
+#ifdef DSPACE_SPREAD
+  fragColor.a = max(fragColor.a, 1.0 / 65536.0); // exposed, as stars are
+#endif
 #endif
 #else
   Hit hit = crossing(window);

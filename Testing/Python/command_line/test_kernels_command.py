@@ -35,6 +35,23 @@ def test_kernels_of_cassini_are_listed(capsys):
     assert code == 0 and "load its clock" in out
 
 
+def test_what_text_kernels_assign_is_listed(capsys):
+    files = [DATA / name for name in ("naif0012.tls", "pck00011.tpc", "gm_de440.tpc", "de430_excerpt_2015-03-02.bsp")]
+    if not all(file.is_file() for file in files):
+        pytest.skip("real data absent: set DSPACE_DATA to the folder that has ephemeris/naif0012.tls")
+    code, out, _ = run(capsys, "kernels", "info", *files)
+    lines = [line.strip() for line in out.splitlines()]
+    assert code == 0 and "leap seconds up to that of 2017-01-01 (TAI - UTC = 37 s)" in lines
+    assert any(line.startswith("radii of SUN, MERCURY, VENUS, MOON, EARTH") for line in lines)
+    assert any(line.startswith("orientation of SUN") for line in lines) and any(line.startswith("GM of ") for line in lines)
+    code, out, _ = run(capsys, "kernels", "info", "--json", *files)
+    contents = json.loads(out)["contents"]
+    assert code == 0 and [c["kind"] for c in contents] == ["LSK", "PCK", "PCK"] and contents[0]["variables"] == 5
+    # Several kernels behind one option, as for `dspace sky`.
+    code, out, _ = run(capsys, "ephemeris", "mars", "--observer", "sun", "--time", "2015-03-02", "--kernel", files[0], files[3])
+    assert code == 0 and "de430_excerpt" in out
+
+
 def test_ephemeris_prints_tables(capsys):
     code, out, _ = run(capsys, "ephemeris", "moon", "--time", "2026-11-01,2026-11-01T01:00,1800", "--csv")
     rows = list(csv.DictReader(io.StringIO(out)))

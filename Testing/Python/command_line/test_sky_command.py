@@ -68,6 +68,27 @@ def test_without_kernels_planets_and_grids_are_drawn(capsys, tmp_path):
     assert (picture(ruled).max(axis=2) > 30).sum() > (picture(stars).max(axis=2) > 30).sum() + 200
     code, out, err = run(capsys, "--time", "2026-01-10T04:00", "--site", "8,50", "--look-at", "jupiter", "--json")
     assert code == 0 and json.loads(out)["target"] == "jupiter", err
+    assert 0.008 < json.loads(out)["diameter_deg"] < 0.0141
+
+
+def test_jupiter_outshines_the_stars_about_it(capsys, tmp_path):
+    """2026-11-28: Jupiter (V -2.2) beside Mars (0.05 by Lambert's phases) and Regulus (1.4)."""
+    path = tmp_path / "jupiter.png"
+    code, _, err = run(capsys, "--time", "2026-11-28T05:00", "--site", "11,48", "--look-at", "jupiter", "--fov", "10", "--exposure", "0.005",
+                       "--size", "401x401", "--out", path)
+    assert code == 0 and "SATURN" not in err
+    light = picture(path)[:, :, 1] / 255.0
+    light = np.where(light <= 0.04045, light / 12.92, ((light + 0.055) / 1.055) ** 2.4)
+    rows, columns = np.mgrid[0:401, 0:401]
+    magnitudes = []
+    for _ in range(3):
+        row, column = np.unravel_index(light.argmax(), light.shape)
+        here = np.hypot(rows - row, columns - column) < 8
+        assert magnitudes or (light.max() < 0.6 and max(abs(row - 200), abs(column - 200)) <= 1)
+        magnitudes.append(-2.5 * np.log10(light[here].sum()))
+        light[here] = 0.0
+    assert magnitudes[1] - magnitudes[0] == pytest.approx(0.05 + 2.2, abs=0.15)
+    assert magnitudes[2] - magnitudes[0] == pytest.approx(1.4 + 2.2, abs=0.15)
 
 
 @pytest.mark.parametrize("arguments", [

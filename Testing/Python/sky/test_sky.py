@@ -189,3 +189,35 @@ def test_a_body_that_is_the_sun_and_a_sun_that_follows_exclude_each_other(scene)
     scene.add_body("moon")  # no Sun
     scene.sun.stop()
     scene.add_body("sun")
+
+
+def test_the_scenes_time_as_text(scene):
+    scene.time = "2026-11-28T05:00:00 TDB"
+    assert scene.time == 846763200.0 + 27 * 86400.0 + 5 * 3600.0
+    assert scene.time_text(decimals=0) == "2026-11-28T05:00:00"
+    with pytest.raises(dspace.InvalidArgument, match="2026-13-01"):
+        scene.time = "2026-13-01"
+    assert scene.time_text(decimals=0) == "2026-11-28T05:00:00"
+
+
+def test_corrections_of_sub_points(scene):
+    """The Sun's light takes 500 s to the Earth, which moves it by 20 arcsec, and aberration by 20 arcsec back."""
+    time = scene.tdb("2026-11-28")
+    points = {c: scene.reference_frames.sub_solar_point("earth", time, correction=c) for c in ("NONE", "LT", "CN", "CN+S")}
+    assert points["CN"][:3] == points["LT"][:3]
+    assert points["CN+S"][:3] == scene.reference_frames.sub_solar_point("earth", time)[:3]
+    # In axes that do not turn, the geometric Sun's direction is that of the ephemeris.
+    sun = scene.ephemeris("sun", "earth", time, axes="ITRF93").position
+    assert points["NONE"].longitude_deg == pytest.approx(np.degrees(np.arctan2(sun[1], sun[0])), abs=1e-9)
+    shift = points["CN"].longitude_deg - points["CN+S"].longitude_deg
+    assert abs(shift) * 3600 == pytest.approx(20.5, abs=2.0)
+    seen = scene.ephemeris("earth", "mars", time, axes="ITRF93").position  # below Mars, without light time
+    below = scene.reference_frames.sub_observer_point("earth", "mars", time, correction="NONE")
+    assert below.longitude_deg == pytest.approx(np.degrees(np.arctan2(-seen[1], -seen[0])), abs=1e-9)
+    with pytest.raises(dspace.InvalidArgument, match="accepted"):
+        scene.reference_frames.sub_solar_point("earth", time, correction="ABERRATION")
+
+
+def test_an_spk_kernel_is_no_trajectory(scene, tmp_path):
+    with pytest.raises(dspace.InvalidArgument, match="body_path"):
+        scene.add_trajectory("orbit.bsp")

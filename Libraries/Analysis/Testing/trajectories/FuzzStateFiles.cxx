@@ -1,6 +1,7 @@
-// What the readers of OEM and xyzv files do with files from anywhere. A fuzz target: input is the
-// bytes of a file, which both readers get. Nothing in it may crash, hang, or throw anything but
-// Error; and the states at the times of an accepted file are finite and those of the file.
+// What the readers of OEM and xyzv files, and of the IERS's tables of the Earth's orientation, do
+// with files from anywhere. A fuzz target: input is the bytes of a file, which all readers get.
+// Nothing in it may crash, hang, or throw anything but Error; and the states at the times of an
+// accepted file are finite and those of the file.
 //
 // How it is built and run: FuzzMain.h.
 #include <cmath>
@@ -11,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include <dspace/time/EarthOrientation.h>
 #include <dspace/trajectories/OemFile.h>
 #include <dspace/trajectories/XyzvFile.h>
 
@@ -58,6 +60,16 @@ void Use(const std::string& path) {
     const XyzvFile file(path);
     Use(*file.GetTrajectory());
   });
+  Try([&] {
+    EarthOrientation::Recognizes(path);
+    const EarthOrientation earth = EarthOrientation::Read(path);
+    for (const EarthOrientation::Row& row : earth.Rows()) {
+      if (!((earth.PoleAt(row.mjd) - row.pole).norm() <= 1e-12) ||
+          !std::isfinite(row.ut1MinusUtc)) {
+        Fail("a pole at a day of the table is not that of the table");
+      }
+    }
+  });
 }
 
 const std::vector<std::string>& Seeds() {
@@ -86,6 +98,11 @@ const std::vector<std::string>& Seeds() {
       "# Target: MSL (-76)\n# Observer: MARS (499)\n# Frame: IAU_MARS\n"
       "2456145.70833 3396 0 100 0.1 -2 0.3\n2456145.70834 3396 -2 100 0.1 -2 0.3\n"
       "2456145.70834 3396 -2 100 0.1 -2 0.3\n2456145.70836 3396 -6 100 0.1 -2 0.3\n",
+      "1962   1   1  37665  -0.012700   0.213000   0.0326338   0.0017230\n"
+      "1962   1   2  37666  -0.015900   0.214100   0.0320547   0.0016690\n",
+      "16 730 57599.00 I  0.214232 0.008236  0.442454 0.011701  I-0.2000000 0.0086754\n"
+      "16 731 57600.00 P  0.215232 0.008236  0.441454 0.011701  P-0.2020000 0.0086754\n"
+      "16 8 1 57601.00\n",
   };
   return seeds;
 }

@@ -9,6 +9,7 @@
 namespace dspace {
 
 constexpr int BodySun = 10;
+constexpr int BodyMoon = 301;
 
 // Built-in names of the Sun, the planets, their barycentres, moons, asteroids and spacecraft that
 // are often asked for, and names that are defined (NAIF_BODY_NAME of a text kernel). Case, and

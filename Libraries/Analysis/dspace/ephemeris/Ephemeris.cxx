@@ -48,10 +48,6 @@ struct Way {
   }
 };
 
-bool HasStar(Correction correction) {
-  return correction == Correction::LightTimeStar || correction == Correction::ConvergedStar;
-}
-
 bool IsConverged(Correction correction) {
   return correction == Correction::Converged || correction == Correction::ConvergedStar;
 }
@@ -114,6 +110,10 @@ const char* CorrectionText(Correction correction) {
     break;
   }
   return "CN+S";
+}
+
+bool HasStar(Correction correction) {
+  return correction == Correction::LightTimeStar || correction == Correction::ConvergedStar;
 }
 
 Ephemeris::Ephemeris() : Frames_(std::make_shared<const InertialTurns>()) {}

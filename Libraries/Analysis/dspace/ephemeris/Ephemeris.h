@@ -28,6 +28,7 @@ enum class Correction {
 // "NONE", "LT", "LT+S", "CN", "CN+S"; case does not matter. Throws Error(InvalidArgument).
 Correction CorrectionOf(const std::string& text);
 const char* CorrectionText(Correction correction);
+bool HasStar(Correction correction); // stellar aberration
 
 constexpr double SpeedOfLight = 299792458.0; // [m/s]
 

@@ -6,6 +6,7 @@
 
 #include <erfa.h>
 
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/time/Days.h>
 
 namespace dspace {
@@ -90,28 +91,29 @@ std::string ErfaSource::Accuracy(int body) const {
     return "up to 14 km off (eraEpv00)";
   case 1:
   case 199:
-    return "up to 1,500 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 1,500 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 2:
   case 299:
-    return "up to 3,200 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 3,200 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 4:
   case 499:
-    return "up to 27,000 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 27,000 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 5:
-    return "up to 180,000 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 180,000 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 6:
-    return "up to 540,000 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 540,000 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 7:
-    return "up to 970,000 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 970,000 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   case 8:
-    return "up to 260,000 km off in 1960 to 2060 (eraPlan94)";
+    return "up to 260,000 km off in 1960 to 2060, not compared beyond (eraPlan94)";
   default:
     return {};
   }
 }
 
 std::string ErfaSource::Warning(int body) const {
-  return "body " + std::to_string(body) + " is taken from ERFA's series, " + this->Accuracy(body) +
+  static const BodyNames names;
+  return "body " + names.NameOf(body) + " is taken from ERFA's series, " + this->Accuracy(body) +
          "; load a kernel, or install Debian's casacore-data-jpl-de405 (1960 to 2060)";
 }
 

@@ -10,6 +10,7 @@
 #include <Eigen/SVD>
 
 #include <dspace/Checks.h>
+#include <dspace/ephemeris/BodyNames.h>
 #include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/orientation/AxisTurns.h>
 #include <dspace/orientation/BodyConstants.h>
@@ -257,6 +258,27 @@ Frames::Link Frames::MoonLink(const FrameInfo& info, double tdb) const {
   return link;
 }
 
+std::optional<Frames::Link> Frames::MoonStandIn(const FrameInfo& info, double tdb) const {
+  if (info.center != BodyMoon) {
+    return std::nullopt;
+  }
+  for (const auto& [id, fixed] : this->Fixed_) {
+    const FrameInfo& mean = this->Table_.Get(id);
+    if (fixed.base != info.id || mean.name.rfind("MOON_ME", 0) != 0) {
+      continue;
+    }
+    FrameInfo builtIn = info;
+    builtIn.id = FrameMoonMe;
+    Link link = this->MoonLink(builtIn, tdb);
+    StateTurn toPrincipal;
+    toPrincipal.rotation = fixed.turn.rotation.transpose();
+    link.turn = toPrincipal * link.turn;
+    link.source += " and the turn of " + fixed.source;
+    return link;
+  }
+  return std::nullopt;
+}
+
 Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
   Link link;
   std::vector<std::pair<double, double>> spans;
@@ -281,6 +303,12 @@ Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
   }
   const bool hasElements = HasBodyRotation(this->Pool(), info.classId);
   if (!spans.empty() && !hasElements && info.id != FrameItrf93) {
+    if (std::optional<Link> moon = this->MoonStandIn(info, tdb)) {
+      moon->warning = Label(info) + " is taken from " + moon->source + ", " + moon->accuracy +
+                      ", outside of what the loaded binary PCKs cover: " +
+                      SpansText(spans, this->Sources_.scales);
+      return *moon;
+    }
     Reject(Label(info), "the time is " + TimeLabel(tdb, this->Sources_.scales) +
                             "; the binary PCKs cover " + SpansText(spans, this->Sources_.scales));
   }
@@ -300,9 +328,10 @@ Frames::Link Frames::PckLink(const FrameInfo& info, double tdb) const {
     }
   } else if (info.id == FrameItrf93) {
     link.base = FrameJ2000;
-    link.turn = EarthRotation(tdb, this->Sources_.scales);
+    const EarthOrientation* earth = this->Sources_.earth.get();
+    link.turn = EarthRotation(tdb, this->Sources_.scales, earth);
     link.source = "ERFA's IAU 2006/2000A precession and nutation";
-    link.accuracy = EarthRotationAccuracy(tdb, this->Sources_.scales);
+    link.accuracy = EarthRotationAccuracy(tdb, this->Sources_.scales, earth);
     warn();
     return link;
   }

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@
 #include <dspace/kernels/ClockKernel.h>
 #include <dspace/kernels/KernelPool.h>
 #include <dspace/orientation/FrameTable.h>
+#include <dspace/time/EarthOrientation.h>
 #include <dspace/time/TimeScales.h>
 
 namespace dspace {
@@ -27,6 +29,7 @@ struct FrameSources {
   std::vector<std::shared_ptr<const CkFile>> attitudes;
   std::shared_ptr<const De405Source> de405; // null: none
   TimeScales scales;
+  std::shared_ptr<const EarthOrientation> earth; // polar motion for ITRF93; null: none
 };
 
 // Answers for every frame of FrameTable.h:
@@ -40,7 +43,8 @@ struct FrameSources {
 // Dynamic and switch frames are named in the error.
 //
 // Where IAU_MOON stands in for MOON_ME, or other data for a binary PCK at a time outside of what it
-// covers, a FallbackScope (Fallbacks.h) has a warning.
+// covers, a FallbackScope (Fallbacks.h) has a warning. Principal axes of the Moon of a kernel
+// (MOON_PA_DE421) follow then from MOON_ME without kernels and the kernel's turn to MOON_ME_DE421.
 //
 // R = Rotation(from, to, tdb) takes components in `from` to those in `to`: v_to = R v_from.
 //
@@ -95,7 +99,11 @@ private:
   struct Chain;
   Link LinkOf(const FrameInfo& info, double tdb) const;
   Link PckLink(const FrameInfo& info, double tdb) const;
+  // Of MOON_PA or MOON_ME without kernels.
   Link MoonLink(const FrameInfo& info, double tdb) const;
+  // Of a kernel's principal axes of the Moon where its binary PCK does not cover the time; none:
+  // no fixed turn of the kernels leads from them to mean Earth axes.
+  std::optional<Link> MoonStandIn(const FrameInfo& info, double tdb) const;
   Link CkLink(const FrameInfo& info, double tdb) const;
   Link TkLink(const FrameInfo& info) const;
   // From `frame` up, until J2000, `stop` (0: none) or a link that cannot be made.

@@ -5,6 +5,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/FilesRead.h>
+#include <dspace/ephemeris/BarycenterSource.h>
 #include <dspace/ephemeris/ErfaSource.h>
 #include <dspace/ephemeris/SpkSource.h>
 #include <dspace/kernels/ClockKernel.h>
@@ -29,6 +30,12 @@ std::shared_ptr<const StateSource> Erfa() {
   return source;
 }
 
+std::shared_ptr<const StateSource> Barycenters() {
+  static const std::shared_ptr<const StateSource> source =
+      std::make_shared<const BarycenterSource>();
+  return source;
+}
+
 } // namespace
 
 // One of the members is set.
@@ -38,6 +45,7 @@ struct KernelSet::File {
   std::shared_ptr<const SpkSource> states;
   std::shared_ptr<const BinaryPck> orientations;
   std::shared_ptr<const CkFile> attitudes;
+  std::shared_ptr<const EarthOrientation> earth;
 };
 
 KernelSet::KernelSet() {
@@ -67,6 +75,8 @@ void KernelSet::Open(const std::string& path, int depth) {
       }
     }
     file->text = text;
+  } else if (EarthOrientation::Recognizes(path)) {
+    file->earth = std::make_shared<const EarthOrientation>(EarthOrientation::Read(path));
   } else {
     auto daf = std::make_shared<const DafFile>(path);
     if (daf->Kind() == "CK") {
@@ -91,12 +101,21 @@ void KernelSet::Build() {
       this->Ephemeris_->Load(file->states);
     } else if (file->orientations) {
       sources.orientations.push_back(file->orientations);
+    } else if (file->earth) {
+      sources.earth = file->earth;
     } else {
       sources.attitudes.push_back(file->attitudes);
     }
   }
   if (HasLeapSeconds(*pool)) {
     sources.scales = TimeScalesOf(*pool);
+  }
+  if (sources.earth) {
+    std::vector<TimeScales::Ut1Row> rows;
+    for (const EarthOrientation::Row& row : sources.earth->Rows()) {
+      rows.push_back({row.mjd, row.ut1MinusUtc});
+    }
+    sources.scales.SetUt1(std::move(rows));
   }
   if (pool->Has("NAIF_BODY_NAME") || pool->Has("NAIF_BODY_CODE")) {
     const std::vector<std::string>& names = pool->Texts("NAIF_BODY_NAME");
@@ -111,6 +130,7 @@ void KernelSet::Build() {
     this->Ephemeris_->Load(sources.de405, Ephemeris::Priority::Last);
   }
   this->Ephemeris_->Load(Erfa(), Ephemeris::Priority::Last);
+  this->Ephemeris_->Load(Barycenters(), Ephemeris::Priority::Last);
   this->Ephemeris_->SetTimeScales(sources.scales);
   auto frames = std::make_shared<const Frames>(std::move(sources));
   this->Ephemeris_->SetFrames(frames);
@@ -175,6 +195,18 @@ std::vector<KernelSet::Segment> KernelSet::Segments() const {
         out.push_back(
             {file->path, "CK", s.name, s.instrument, 0, s.frame, s.type, tdb(s.begin), tdb(s.end)});
       }
+    }
+  }
+  return out;
+}
+
+std::vector<KernelContent> KernelSet::Contents() const {
+  std::vector<KernelContent> out;
+  for (const std::shared_ptr<const File>& file : this->Files_) {
+    if (file->text) {
+      out.push_back(ContentOf(*file->text, this->Ephemeris_->Names()));
+    } else if (file->earth) {
+      out.push_back(ContentOf(*file->earth));
     }
   }
   return out;

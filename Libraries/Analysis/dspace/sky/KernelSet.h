@@ -9,6 +9,7 @@
 #include <dspace/ephemeris/Ephemeris.h>
 #include <dspace/kernels/KernelPool.h>
 #include <dspace/orientation/Frames.h>
+#include <dspace/sky/KernelContents.h>
 
 namespace dspace {
 
@@ -32,9 +33,10 @@ public:
 
   KernelSet(); // no kernels
 
-  // This set and one more file, or for a meta-kernel the files that it names. The path of a file
-  // that is loaded already is taken again, last. Throws Error(NotFound, Io, Corrupt, Unsupported),
-  // and Error(InvalidArgument) for meta-kernels that load each other.
+  // This set and one more file, or for a meta-kernel the files that it names. A table of the
+  // Earth's orientation (EarthOrientation.h) counts as a kernel; the last one alone is used. The
+  // path of a file that is loaded already is taken again, last. Throws Error(NotFound, Io, Corrupt,
+  // Unsupported), and Error(InvalidArgument) for meta-kernels that load each other.
   std::shared_ptr<const KernelSet> With(const std::string& path) const;
   // Throws Error(NotFound) with the paths that are loaded.
   std::shared_ptr<const KernelSet> Without(const std::string& path) const;
@@ -42,7 +44,8 @@ public:
   const std::vector<std::string>& Paths() const { return this->Paths_; } // as given to With
   // All files, those of meta-kernels among them, in the order in which they count.
   std::vector<std::string> Files() const;
-  std::vector<Segment> Segments() const; // of all files, in their order
+  std::vector<Segment> Segments() const;       // of all binary kernels, in their order
+  std::vector<KernelContent> Contents() const; // of the other files, in their order
 
   const Ephemeris& GetEphemeris() const { return *this->Ephemeris_; }
   const Frames& GetFrames() const { return *this->Frames_; }

@@ -37,28 +37,45 @@ void RequireOther(const Ephemeris& ephemeris, int body, int other) {
   }
 }
 
+// A target as an observer sees it with a correction, J2000.
+Sighting Seen(const Ephemeris& ephemeris, int target, const State& observer, double tdb,
+              Correction correction) {
+  if (correction == Correction::None) {
+    return {ephemeris.FromBarycenter(target, tdb) - observer, 0.0};
+  }
+  Sighting seen = Sight(ephemeris, target, observer, tdb);
+  if (HasStar(correction)) {
+    seen.state.position = Aberrated(seen.state.position, observer.velocity);
+  }
+  return seen;
+}
+
 // The Sun's direction as it arrives at the body's centre.
-Eigen::Vector3d SunFrom(const Ephemeris& ephemeris, int body, double epoch) {
+Eigen::Vector3d SunFrom(const Ephemeris& ephemeris, int body, double epoch, Correction correction) {
   const State at = ephemeris.FromBarycenter(body, epoch);
-  return Aberrated(Sight(ephemeris, BodySun, at, epoch).state.position, at.velocity);
+  return Seen(ephemeris, BodySun, at, epoch, correction).state.position;
 }
 
 } // namespace
 
 SubPoint SubSolarPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
-                       const std::string& frame, double tdb, std::optional<int> observer) {
+                       const std::string& frame, double tdb, std::optional<int> observer,
+                       Correction correction) {
   RequireOther(ephemeris, body, BodySun);
   const std::string axes = FrameOf(frames, body, frame);
   if (!observer) {
-    return Below(frames, body, axes, tdb, SunFrom(ephemeris, body, tdb));
+    return Below(frames, body, axes, tdb, SunFrom(ephemeris, body, tdb, correction));
   }
   RequireOther(ephemeris, body, *observer);
   const State eye = ephemeris.FromBarycenter(*observer, tdb);
   SubPoint out;
-  double lightTime = Sight(ephemeris, body, eye, tdb).lightTime; // of the centre
+  double lightTime = Seen(ephemeris, body, eye, tdb, correction).lightTime; // of the centre
   for (int i = 0; i < 3; ++i) {
     const double epoch = tdb - lightTime;
-    out = Below(frames, body, axes, epoch, SunFrom(ephemeris, body, epoch));
+    out = Below(frames, body, axes, epoch, SunFrom(ephemeris, body, epoch, correction));
+    if (correction == Correction::None) {
+      break;
+    }
     const Eigen::Vector3d point = ephemeris.FromBarycenter(body, epoch).position +
                                   frames.Rotation(axes, "J2000", epoch) * out.position;
     lightTime = (point - eye.position).norm() / SpeedOfLight;
@@ -67,12 +84,16 @@ SubPoint SubSolarPoint(const Ephemeris& ephemeris, const Frames& frames, int bod
 }
 
 SubPoint SubObserverPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
-                          const std::string& frame, int observer, double tdb) {
+                          const std::string& frame, int observer, double tdb,
+                          Correction correction) {
   RequireOther(ephemeris, body, observer);
   const std::string axes = FrameOf(frames, body, frame);
   const State eye = ephemeris.FromBarycenter(observer, tdb);
-  const Sighting sighting = Sight(ephemeris, body, eye, tdb);
-  const Eigen::Vector3d back = -Aberrated(sighting.state.position, eye.velocity);
+  const Sighting sighting = Seen(ephemeris, body, eye, tdb, correction);
+  const Eigen::Vector3d back = -sighting.state.position;
+  if (correction == Correction::None) {
+    return Below(frames, body, axes, tdb, back);
+  }
   const double radius = BodyRadii(frames.Pool(), body).maxCoeff();
   // The point is nearer than the centre by about a radius.
   return Below(frames, body, axes, tdb - sighting.lightTime + radius / SpeedOfLight, back);

@@ -22,13 +22,16 @@ struct SubPoint {
 
 // `frame` is body-fixed; empty: the body's own (BodyFixed of FrameTable.h). With an observer, the
 // point is that which light shows to it at `tdb`: of the epoch when that light left, under a Sun
-// whose light arrived then. Without, the epoch is `tdb`. The Sun's direction is with light time and
-// stellar aberration. Throws what Ephemeris and Frames throw.
+// whose light arrived then. Without, the epoch is `tdb`. `correction`: how light shows the Sun to
+// the body, and the body to the observer; light times are always iterated. Throws what Ephemeris
+// and Frames throw.
 SubPoint SubSolarPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
-                       const std::string& frame, double tdb, std::optional<int> observer = {});
-// Below an observer, which sees the point at `tdb` (light time and stellar aberration).
+                       const std::string& frame, double tdb, std::optional<int> observer = {},
+                       Correction correction = Correction::ConvergedStar);
+// Below an observer, which sees the point at `tdb`.
 SubPoint SubObserverPoint(const Ephemeris& ephemeris, const Frames& frames, int body,
-                          const std::string& frame, int observer, double tdb);
+                          const std::string& frame, int observer, double tdb,
+                          Correction correction = Correction::ConvergedStar);
 
 } // namespace dspace
 

@@ -11,6 +11,7 @@
 #include <dspace/Checks.h>
 #include <dspace/FilesRead.h>
 #include <dspace/SystemFiles.h>
+#include <dspace/time/DayText.h>
 #include <dspace/time/Days.h>
 
 namespace dspace {
@@ -18,15 +19,6 @@ namespace {
 
 constexpr int FirstDay = 36934;      // 1960-01-01
 constexpr int FirstWholeDay = 41317; // 1972-01-01: whole seconds from here on
-
-std::string DayText(int mjd) {
-  int year = 0, month = 0, day = 0;
-  double fraction = 0.0;
-  eraJd2cal(MjdZero, mjd, &year, &month, &day, &fraction);
-  char text[32];
-  std::snprintf(text, sizeof(text), "%04d-%02d-%02d", year, month, day);
-  return text;
-}
 
 int DayOf(int year, int month) {
   double zero = 0.0, mjd = 0.0;
@@ -94,6 +86,10 @@ const char* LeapSeconds::SystemList() {
 }
 
 LeapSeconds LeapSeconds::FromErfa() {
+  return Erfa();
+}
+
+const LeapSeconds& LeapSeconds::Erfa() {
   static const LeapSeconds table = [] {
     eraLEAPSECOND* rows = nullptr;
     const int count = eraGetLeapSeconds(&rows);
@@ -191,6 +187,20 @@ double LeapSeconds::TaiMinusUtc(int mjd, double dayFraction) const {
   return std::prev(after)->taiMinusUtc;
 }
 
+std::string LeapSeconds::Lacking() const {
+  const std::vector<Step>& known = Erfa().Steps();
+  const Step& last = this->Steps_.back();
+  const auto next = std::find_if(known.begin(), known.end(),
+                                 [&](const Step& step) { return step.mjd > last.mjd; });
+  if (next == known.end()) {
+    return {};
+  }
+  const double seconds = known.back().taiMinusUtc - last.taiMinusUtc;
+  return "the leap seconds of " + this->Source_ + " end before that of " + DayText(next->mjd) +
+         ", which ERFA has: UTC from that day on is off by up to " + NumberText(seconds) +
+         " s; load a newer LSK";
+}
+
 int LeapSeconds::SecondsOfDay(int mjd) const {
   if (mjd < FirstWholeDay) {
     return 86400;
@@ -199,12 +209,15 @@ int LeapSeconds::SecondsOfDay(int mjd) const {
 }
 
 std::string LeapSeconds::WarningAt(int mjd) const {
-  if (!this->Expires_ || mjd < *this->Expires_) {
-    return {};
+  if (this->Expires_ && mjd >= *this->Expires_) {
+    return "the leap seconds of " + this->Source_ + " are known up to " + DayText(*this->Expires_) +
+           ": UTC on " + DayText(mjd) +
+           " may be off by a second or more; an LSK or a newer tzdata brings later ones";
   }
-  return "the leap seconds of " + this->Source_ + " are known up to " + DayText(*this->Expires_) +
-         ": UTC on " + DayText(mjd) +
-         " may be off by a second or more; an LSK or a newer tzdata brings later ones";
+  if (mjd > this->Steps_.back().mjd && this->TaiMinusUtc(mjd) != Erfa().TaiMinusUtc(mjd)) {
+    return this->Lacking();
+  }
+  return {};
 }
 
 } // namespace dspace

@@ -45,11 +45,14 @@ public:
   const std::string& Source() const { return this->Source_; }
   // The day from which on the table may lack a leap second; absent: not stated.
   std::optional<int> Expires() const { return this->Expires_; }
-  // A warning for a day on which the table has expired; empty: none.
+  // A warning where ERFA's table goes on after this one's last leap second; empty: it does not.
+  std::string Lacking() const;
+  // A warning for a day on which the table has expired, or lacks a leap second; empty: none.
   std::string WarningAt(int mjd) const;
 
 private:
   LeapSeconds() = default;
+  static const LeapSeconds& Erfa(); // FromErfa, made once
   std::vector<Step> Steps_;
   std::string Source_;
   std::optional<int> Expires_;

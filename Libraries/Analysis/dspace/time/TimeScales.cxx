@@ -1,9 +1,11 @@
 #include <dspace/time/TimeScales.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <dspace/Checks.h>
+#include <dspace/time/DayText.h>
 #include <dspace/time/Days.h>
 
 namespace dspace {
@@ -41,6 +43,19 @@ const char* TimeScaleName(TimeScale scale) {
   return "UT1";
 }
 
+TimeScale TimeScaleOf(const std::string& name) {
+  std::string upper = name;
+  std::transform(upper.begin(), upper.end(), upper.begin(),
+                 [](unsigned char c) { return char(std::toupper(c)); });
+  for (const TimeScale scale :
+       {TimeScale::Utc, TimeScale::Tai, TimeScale::Tt, TimeScale::Tdb, TimeScale::Ut1}) {
+    if (upper == TimeScaleName(scale)) {
+      return scale;
+    }
+  }
+  Reject("time scale '" + name + "'", "it is unknown; accepted: UTC, TAI, TT, TDB, UT1");
+}
+
 TimeScales::TimeScales() : TimeScales(LeapSeconds::FromSystem()) {}
 
 TimeScales::TimeScales(LeapSeconds leapSeconds, const DeltaEt& deltaEt)
@@ -57,10 +72,16 @@ void TimeScales::SetUt1(std::vector<Ut1Row> rows) {
   this->Ut1_ = std::move(rows);
 }
 
+bool TimeScales::KnowsUt1(double mjd) const {
+  return this->Ut1_.size() == 1 ||
+         (!this->Ut1_.empty() && mjd >= this->Ut1_.front().mjd && mjd <= this->Ut1_.back().mjd);
+}
+
 double TimeScales::Ut1MinusTai(double mjd) const {
   if (this->Ut1_.empty()) {
     throw Error(Error::Kind::NotFound, "UT1",
-                "UT1 - UTC is not known, because it is measured; accepted: after SetUt1");
+                "UT1 - UTC is not known, because it is measured; accepted: a file of the IERS "
+                "(finals2000A or EOP C04), loaded as a kernel");
   }
   const auto value = [this](const Ut1Row& row) {
     const double day = std::floor(row.mjd);
@@ -72,9 +93,10 @@ double TimeScales::Ut1MinusTai(double mjd) const {
     const double day = std::floor(mjd);
     return first.ut1MinusUtc - this->Leaps_.TaiMinusUtc(int(day), mjd - day);
   }
-  if (!(mjd >= first.mjd && mjd <= last.mjd)) {
-    Reject("UT1", "UT1 - UTC is not known on MJD " + NumberText(mjd) +
-                      "; accepted: " + NumberText(first.mjd) + " to " + NumberText(last.mjd));
+  if (!this->KnowsUt1(mjd)) {
+    Reject("UT1", "UT1 - UTC is not known on " + DayText(int(std::floor(mjd))) +
+                      "; accepted: " + DayText(int(std::floor(first.mjd))) + " to " +
+                      DayText(int(std::floor(last.mjd))));
   }
   auto next = std::upper_bound(this->Ut1_.begin(), this->Ut1_.end(), mjd,
                                [](double day, const Ut1Row& row) { return day < row.mjd; });

@@ -14,6 +14,8 @@ enum class TimeScale { Utc, Tai, Tt, Tdb, Ut1 };
 
 // "UTC", "TAI", "TT", "TDB" or "UT1".
 const char* TimeScaleName(TimeScale scale);
+// In any case. Throws Error(InvalidArgument).
+TimeScale TimeScaleOf(const std::string& name);
 
 // Seconds of an atomic or dynamic scale are past J2000: 2000-01-01 12:00:00 of that same scale.
 // A double resolves 0.1 us within 30 years of 2000, and 30 us in the year 9999.
@@ -51,6 +53,8 @@ public:
   // Error(NotFound). One row applies at all times; between several, UT1 - TAI is linear, and times
   // beyond them throw Error(InvalidArgument). Throws unless days ascend.
   void SetUt1(std::vector<Ut1Row> rows);
+  // Whether the rows answer for a day of UTC.
+  bool KnowsUt1(double mjd) const;
 
   // Throws Error(InvalidArgument) for what is not finite, and beyond the years 1960 (UTC, UT1) or
   // -9999 to 9999 (others).

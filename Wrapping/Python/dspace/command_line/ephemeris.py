@@ -18,8 +18,8 @@ def add_arguments(parser):
                         "times from T0 to T1")
     parser.add_argument("--frame", default="J2000", metavar="F", help="the reference frame of the state (default: J2000)")
     parser.add_argument("--correction", default="NONE", choices=("NONE", "LT", "LT+S", "CN", "CN+S"))
-    parser.add_argument("--kernel", action="append", default=[], metavar="FILE",
-                        help="a SPICE kernel; may be given several times, later ones are asked first")
+    parser.add_argument("--kernel", action="append", nargs="+", default=[], metavar="FILE",
+                        help="SPICE kernels; may be given several times, later ones are asked first")
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--csv", action="store_true")
     form.add_argument("--json", action="store_true")
@@ -34,7 +34,7 @@ def run(options):
     with dspace.Session() as session:
         scene = session.scene()
         if options.kernel:
-            scene.kernels.load(*options.kernel)
+            scene.kernels.load(*(each for group in options.kernel for each in group))
         times = scene.tdb(parts[:2])
         if len(parts) == 3:
             try:

@@ -8,10 +8,11 @@ def add_arguments(parser):
     commands = parser.add_subparsers(dest="what", metavar="WHAT", required=True)
     info = commands.add_parser(
         "info", help="list segments, coverage, frames, clocks and fields of view",
-        description="Lists what SPICE kernels contain: segments with their coverage, and of text kernels frames, clocks "
-        "and fields of view. All files are loaded together: with the clock of a spacecraft (SCLK), the times of its "
+        description="Lists what SPICE kernels contain: segments with their coverage, and what text kernels and "
+        "tables of the IERS assign: leap seconds, radii, frames, clocks, fields of view. All files are loaded together: with the clock of a spacecraft (SCLK), the times of its "
         "attitude (CK) are known; with leap seconds (LSK), theirs are used.")
-    info.add_argument("files", nargs="+", metavar="FILE", help="SPK, CK, PCK, LSK, FK, IK, SCLK, or a meta-kernel")
+    info.add_argument("files", nargs="+", metavar="FILE", help="SPK, CK, PCK, LSK, FK, IK, SCLK, a meta-kernel, "
+                      "or the IERS's finals2000A or EOP C04")
     info.add_argument("--json", action="store_true", help="print JSON")
     info.set_defaults(run=run)
 
@@ -26,6 +27,7 @@ def run(options):
             "files": kernels.files,
             "segments": [dict(s._asdict(), begin_utc=_utc(scene, s.begin_s), end_utc=_utc(scene, s.end_s))
                          for s in kernels.segments],
+            "contents": [c._asdict() for c in kernels.contents],
             "frames": [f._asdict() for f in kernels.frames],
             "clocks": [dict(c._asdict(), begin_utc=_utc(scene, c.begin_s), end_utc=_utc(scene, c.end_s))
                        for c in kernels.clocks],
@@ -43,14 +45,18 @@ def run(options):
 
 
 def _utc(scene, tdb):
-    """UTC as text; TDB seconds where there is no UTC; None: not known."""
+    """UTC as text; TDB where there is no UTC; None: not known."""
     import dspace
     if not math.isfinite(tdb):
         return None
     try:
         return scene.utc(tdb, decimals=0)
     except dspace.InvalidArgument:  # before 1960, after 9999
-        return f"{tdb:.0f} s TDB"
+        pass
+    try:
+        return scene.time_text(tdb, "TDB", decimals=0) + " TDB"
+    except dspace.InvalidArgument:  # before the year 1, after 9999
+        return f"{tdb:.0f} s past J2000 TDB"
 
 
 def _print(found):
@@ -62,6 +68,11 @@ def _print(found):
                 center = f" from {s['center']}" if s["kind"] == "SPK" else ""
                 name = f"  '{s['name']}'" if s["name"] else ""
                 print(f"  {s['kind']} type {s['type']}: {s['body']}{center} in {s['frame']}, {span}{name}")
+        for c in found["contents"]:
+            if c["file"] == file:
+                print(f"  {c['kind'] or 'text kernel'}" + (f": {c['variables']} variables" if c["variables"] else ""))
+                for item in c["items"]:
+                    print(f"  {item}")
         for f in found["frames"]:
             if f["kernel"] == file:
                 print(f"  frame {f['name']} ({f['id']}): {f['kind']}, centre {f['center']}")

@@ -4,15 +4,15 @@ import json
 import math
 import pathlib
 import sys
+import warnings
 
 from dspace.command_line import Failed
 from dspace.command_line import terrain as values
-from dspace.errors import InvalidArgument, NotFound
 
 BODIES = ("sun", "moon", "mercury", "venus", "earth", "mars", "jupiter", "saturn", "uranus", "neptune")
-# DE405 and ERFA have no places of these in their systems: the barycentre stands for the planet (Jupiter: 200 km).
-BARYCENTERS = ("jupiter", "saturn", "uranus", "neptune")
+POINTS = ("mercury", "venus", "mars", "jupiter", "saturn", "uranus", "neptune")  # drawn as stars are, while they are points
 STAR_GAIN = 3e5  # shows stars beside lit bodies at exposure 1
+STAR_SPREAD = 0.9  # [pixels]
 EYE_HEIGHT = 2.0  # [m] above the site: a body is drawn from a metre above its ground on
 
 
@@ -66,13 +66,15 @@ def run(options):
         scene.time = scene.tdb(options.time)
         target = None
         if options.look_at is not None:
-            target = sky_of(scene, options.look_at, options.body, site)
+            target = scene.sky(options.look_at, body=options.body, site=site)[options.look_at]
             azimuth, elevation = target.azimuth_deg, target.elevation_deg
         else:
-            sky_of(scene, "sun", options.body, site)  # body and time are known
+            scene.sky("sun", body=options.body, site=site)  # body and time are known
             azimuth, elevation = options.azimuth, options.elevation or 0.0
         if options.out is not None:
-            draw(scene, options, site, size, azimuth, elevation)
+            with warnings.catch_warnings():  # a barycentre is off by less than a pixel
+                warnings.filterwarnings("ignore", message=".*barycentre of its system")
+                draw(scene, options, site, size, azimuth, elevation)
         tell(options, scene.utc(), target, azimuth, elevation)
     if options.out is not None and not options.json:
         print(f"{out}: {size[0]} x {size[1]} pixels")
@@ -98,16 +100,6 @@ def site_of(text):
     return longitude, latitude, height
 
 
-def sky_of(scene, name, body, site):
-    """The SkyBody of a target over the site. A planet whose own place no source has is taken at its barycentre."""
-    try:
-        return scene.sky(name, body=body, site=site)[name]
-    except (InvalidArgument, NotFound):
-        if name.lower() not in BARYCENTERS:
-            raise
-        return scene.sky(name + " barycenter", body=body, site=site)[name + " barycenter"]
-
-
 def draw(scene, options, site, size, azimuth, elevation):
     """Writes the picture. The scene's root is the centre of the site's body with J2000's axes, which the stars have.
     Bodies are at their apparent places from that centre, with light time and aberration: within 0.4 arcsec of the
@@ -117,18 +109,13 @@ def draw(scene, options, site, size, azimuth, elevation):
     place = scene.add_celestial_frame("site", options.body, site=site, center=options.body)
     columns = {name: name for name in ("ra_deg", "dec_deg", "magnitude", "color_index")}
     scene.add_stars(None if options.catalogue is None else read_stars(options.catalogue, columns), gain=STAR_GAIN,
-                    spread=0.9)
+                    spread=STAR_SPREAD)
     for name in BODIES:
         here = name == options.body.lower()
-        for source in (name, f"{name} barycenter"):
-            try:
-                frame = scene.add_celestial_frame(name, source, axes=axes_of(name), center=options.body,
-                                                  correction="NONE" if here else "CN+S")
-                break
-            except (InvalidArgument, NotFound):
-                if source != name or name not in BARYCENTERS:
-                    raise
-        scene.add_body(name, frame=frame)
+        frame = scene.add_celestial_frame(name, name, axes=axes_of(name), center=options.body,
+                                          correction="NONE" if here else "CN+S")
+        point = {"point_gain": STAR_GAIN, "point_spread": STAR_SPREAD} if name in POINTS else {}
+        scene.add_body(name, frame=frame, **point)
     if options.grid == "horizon":
         scene.add_sky_grid("horizon", frame=place)
     elif options.grid is not None:

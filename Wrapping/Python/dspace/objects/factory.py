@@ -17,7 +17,7 @@ from dspace.objects.models import Model
 from dspace.objects.polydata import make_polydata
 from dspace.objects.robots import Robot
 from dspace.stars.catalog import StarCatalog, bright_stars
-from dspace.stars.lines import RADIUS, constellation_names, constellations
+from dspace.stars.lines import GRID_COLORS, RADIUS, constellation_names, constellations
 from dspace.stars.lines import grid as sky_grid
 
 # The rotation that turns a file's axis to Z.
@@ -347,13 +347,15 @@ class ObjectFactory:
         put_given(message.look, label, faintest=faintest)
         return self._make(command, Stars)
 
-    def add_sky_grid(self, kind="equatorial", step_deg=15.0, color=(0.25, 0.35, 0.6), **settings):
+    def add_sky_grid(self, kind="equatorial", step_deg=15.0, color=None, **settings):
         """Adds meridians and parallels of the sky, 1e17 m away, as an ornament without label. Returns a Mesh.
 
         kind: "equatorial" (right ascension and declination) or "ecliptic" (of J2000), in a `frame` whose axes are those of
         J2000 (X to the equinox, Z to the north pole); "horizon" (azimuth and elevation), in a frame of a site with Z up.
-        step_deg: between lines, 1 to 90, a whole part of 90. Lines are a circle each; those of Z's poles end beside them."""
+        step_deg: between lines, 1 to 90, a whole part of 90. Lines are a circle each; those of Z's poles end beside them.
+        color: default blue (equatorial), yellow (ecliptic), or green (horizon)."""
         points, lines = sky_grid(kind, step_deg, "sky grid")
+        color = GRID_COLORS[kind] if color is None else color
         return self._add_sky_lines(points, lines, f"{kind} grid", color, settings)
 
     def add_constellations(self, path, color=(0.35, 0.5, 0.45), **settings):

@@ -25,8 +25,8 @@ class BodyFactory:
         self._scene = scene
 
     def add_body(self, body=None, radii=None, texture=None, left_edge_deg=None, geodetic=None, albedo=None, sun=None,
-                 eclipses=None, rings=None, atmosphere=None, terrain=None, center=None, axes=None, center_axes="J2000",
-                 correction="NONE", **settings):
+                 eclipses=None, rings=None, atmosphere=None, point_gain=None, point_spread=None, terrain=None, center=None,
+                 axes=None, center_axes="J2000", correction="NONE", **settings):
         """Adds the Sun, a planet or a moon: an ellipsoid that is seen from the ground to where it is a point.
 
         body: "sun", "earth", "moon", "mars", "saturn", ... (an unknown name lists all; radii of IAU's report of 2015), or any
@@ -42,6 +42,8 @@ class BodyFactory:
         atmosphere: a dict of top, rayleigh, rayleigh_height, mie, mie_extinction, mie_height, mie_asymmetry [m, 1/m], or
         False for none; default: those of the Earth and of Mars (single scattering of Rayleigh's kind and by haze).
         What is smaller than a few pixels shares out the light of its disc among them: it keeps its irradiance.
+        point_gain, point_spread: as gain and spread of add_stars, for a planet among stars, where its disc has a radius below
+        half a pixel (default: 1, and 0 pixels). They fade up to a radius of 2 pixels. Not for the Sun.
 
         center: the body follows the scene's time: it stands on a new frame of its name, which add_celestial_frame makes
         below `frame` (default: the root) with center, center_axes and correction, and with `axes` (default: those that
@@ -82,7 +84,8 @@ class BodyFactory:
                     reject(label, "position, quaternion or stretch", "given", "none of them with terrain: move the frame")
                 message.ground = ground.object.id
             put_given(message, label, left_edge_deg=left_edge_deg, geodetic=geodetic, albedo=albedo, sun=sun,
-                      eclipses=eclipses)
+                      eclipses=eclipses,
+                      point_gain=point_gain, point_spread=point_spread)
             if body is not None:
                 put(message, label, body=body)
             if radii is not None:

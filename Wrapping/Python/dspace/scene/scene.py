@@ -110,7 +110,8 @@ class Scene(Strict):
 
     @property
     def time(self):
-        """Simulation time [s]. Smoothed cameras depend on it. Set it before the poses of a step.
+        """Simulation time [s]. Smoothed cameras depend on it. Set it before the poses of a step. A text is taken as a time
+        (see tdb), and sets seconds past J2000 TDB.
 
         It may be set back, as a playback does when it jumps. Chase cameras with smoothing_s then restart
         without lag; trails keep their points (see Trail.clear)."""
@@ -118,7 +119,8 @@ class Scene(Strict):
 
     @time.setter
     def time(self, time_s):
-        self._do("set_time", f"scene {self._name_!r}", time_s=time_s)
+        seconds = self.tdb(time_s) if isinstance(time_s, str) else time_s
+        self._do("set_time", f"scene {self._name_!r}", time_s=seconds)
 
     # --- Frames --------------------------------------------------------------------------------
 
@@ -263,6 +265,7 @@ class Scene(Strict):
     ephemeris = delegate(SceneSky, "ephemeris")
     tdb = delegate(SceneSky, "tdb")
     utc = delegate(SceneSky, "utc")
+    time_text = delegate(SceneSky, "time_text")
     add_celestial_frame = delegate(SceneSky, "add_celestial_frame")
     stop_motion = delegate(SceneSky, "stop_motion")
 

@@ -23,6 +23,7 @@ KernelClock = collections.namedtuple("KernelClock", "id begin_s end_s")
 KernelInstrument = collections.namedtuple("KernelInstrument", "id shape frame boresight boundary")
 KernelSegment = collections.namedtuple("KernelSegment", "file kind name body center frame type begin_s end_s")
 KernelConflict = collections.namedtuple("KernelConflict", "name winner loser")
+KernelContent = collections.namedtuple("KernelContent", "file kind variables items")
 
 
 def _times(times, about):
@@ -40,7 +41,8 @@ def _times(times, about):
 class Kernels(Strict):
     """The SPICE kernels of a scene: SPK, binary PCK, CK (attitude) and text kernels (PCK, LSK, FK, IK, SCLK,
     meta-kernels), in the order of loading. What is loaded later wins. After all kernels come JPL's DE405 (1960 to 2060,
-    where Debian's casacore-data-jpl-de405 is installed) and ERFA.
+    where Debian's casacore-data-jpl-de405 is installed) and ERFA. A table of the IERS, finals2000A or EOP C04, is loaded
+    as a kernel, too: UT1 and polar motion, for times in UT1 and for ITRF93. The last one alone is used.
 
         scene.kernels.load("moon_080317.tf", "moon_pa_de421_1900-2050.bpc")
     """
@@ -103,6 +105,12 @@ class Kernels(Strict):
                 for s in self._list().segment]
 
     @property
+    def contents(self):
+        """What text kernels and tables of the IERS contain: file, kind ("LSK", "PCK", "FK", "IK", "SCLK", "MK", "EOP"; "":
+        not stated), number of variables, and items in words ("radii of SUN, MERCURY, ...")."""
+        return [KernelContent(c.file, c.kind, c.variables, list(c.item)) for c in self._list().content]
+
+    @property
     def conflicts(self):
         """Variables to which two text kernels give different values: name, the file that won, the file that lost."""
         return [KernelConflict(c.name, c.winner, c.loser) for c in self._list().conflict]
@@ -153,16 +161,17 @@ class ReferenceFrames(Strict):
         reply, _ = self._turn(start, end, time, False)
         return [FrameStep(s.frame, s.relative, s.source, s.accuracy) for s in reply.step]
 
-    def sub_solar_point(self, body, times=None, frame=None, observer=None):
+    def sub_solar_point(self, body, times=None, frame=None, observer=None, correction="CN+S"):
         """The point of a body below the Sun: SubPoint. frame: body-fixed; None: MOON_ME, ITRF93 or IAU_*. observer: a
-        body that sees it at the time (light time); None: at the time itself."""
-        return self._sub_points(body, times, frame, observer, False)
+        body that sees it at the time (light time); None: at the time itself. correction: how light shows the Sun to the body,
+        and the body to the observer: "NONE", "LT" or "CN" (the same: light time, iterated), "LT+S" or "CN+S"."""
+        return self._sub_points(body, times, frame, observer, False, correction)
 
-    def sub_observer_point(self, body, observer, times=None, frame=None):
-        """The point of a body below an observer, as it sees it: SubPoint."""
-        return self._sub_points(body, times, frame, observer, True)
+    def sub_observer_point(self, body, observer, times=None, frame=None, correction="CN+S"):
+        """The point of a body below an observer, as it sees it: SubPoint. correction: as sub_solar_point."""
+        return self._sub_points(body, times, frame, observer, True, correction)
 
-    def _sub_points(self, body, times, frame, observer, below_observer):
+    def _sub_points(self, body, times, frame, observer, below_observer, correction):
         about = f"body {body!r}"
         command = self._scene._command()
         message = command.find_sub_points
@@ -170,6 +179,8 @@ class ReferenceFrames(Strict):
         message.frame = text("" if frame is None else frame, "the frame", about)
         message.observer = text("" if observer is None else observer, "the observer", about)
         message.below_observer = below_observer
+        word(correction, CORRECTIONS, "the correction", about)
+        message.correction = correction
         array, single = _times(times, about)
         wire.put_array(message, "time_s", array)
         reply = self._scene._execute(command).sub_points
@@ -284,6 +295,18 @@ class SceneSky:
         about = "time"
         command = self._scene._command()
         put(command.convert_times, about, decimals=decimals)
+        array, single = _times(self._scene.time if times is None else times, about)
+        wire.put_array(command.convert_times, "time_s", array)
+        texts = list(self._scene._execute(command).times.utc)
+        return texts[0] if single else texts
+
+    def time_text(self, times=None, scale="TDB", decimals=3):
+        """Seconds past J2000 TDB as text in a time scale: "UTC", "TAI", "TT", "TDB", or "UT1" (load a table of the IERS
+        as a kernel); a list for an array; None: the scene's time. The scale is not part of the text."""
+        about = "time"
+        command = self._scene._command()
+        put(command.convert_times, about, decimals=decimals)
+        command.convert_times.scale = text(scale, "the scale", about, "UTC, TAI, TT, TDB, UT1")
         array, single = _times(self._scene.time if times is None else times, about)
         wire.put_array(command.convert_times, "time_s", array)
         texts = list(self._scene._execute(command).times.utc)

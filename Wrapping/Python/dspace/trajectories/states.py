@@ -113,6 +113,9 @@ def put_path(message, path, about):
         path._put(message)
     elif isinstance(path, str) or hasattr(path, "__fspath__"):
         name = file_path(path, "the path", about)
+        if name.lower().endswith((".bsp", ".spk")):
+            reject(about, "the path", path, "an OEM or .xyzv file; of an SPK kernel, load it (scene.kernels.load) and give "
+                   "scene.body_path(body, center, begin, end)")
         (Xyzv if name.lower().endswith(".xyzv") else Oem)(name)._put(message)
     else:
         reject(about, "the path", path, "States, a Conic, an OEM or .xyzv file, a Trajectory", WrongType)

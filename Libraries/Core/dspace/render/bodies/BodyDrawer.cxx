@@ -37,6 +37,39 @@ std::string DiscDefine(const BodyView& body, int samples) {
   return "#define DSPACE_DISC " + std::to_string(side) + "\n";
 }
 
+// How a body is drawn that is a point, or nearly one.
+struct PointLook {
+  double gain = 1.0;
+  double spread = 0.0; // standard deviation of the point spread [samples]; 0: none
+};
+
+PointLook PointLookOf(const BodyShape& shape, const BodyView& body, const CustomDrawing& drawing) {
+  PointLook look;
+  if (shape.sun) {
+    return look;
+  }
+  const double radius = body.radius / drawing.samples;
+  const double part = std::clamp((radius - CelestialBody::PointRadius) /
+                                     (CelestialBody::DiscRadius - CelestialBody::PointRadius),
+                                 0.0, 1.0);
+  const double share = 1.0 - part * part * (3.0 - 2.0 * part);
+  look.gain = drawing.list.Filter().physicalOnly ? 1.0 : std::pow(shape.pointGain, share);
+  look.spread = share * shape.pointSpread * drawing.samples;
+  return look;
+}
+
+// From the disc to where its light makes no difference [samples].
+double ReachOf(const BodyView& body, const CustomDrawing& drawing, double brightness,
+               double variance) {
+  constexpr double LeastLight = 1.0 / 16384.0;
+  constexpr double MostReach = 256.0;
+  constexpr double SunAtMercury = 11.0; // against that at 1 au
+  const double light = drawing.light ? 1e3
+                                     : SunAtMercury * brightness * drawing.view.look.exposure *
+                                           body.radius * body.radius / variance / LeastLight;
+  return std::min(std::sqrt(2.0 * variance * std::log(std::max(light, 2.0))) + 1.0, MostReach);
+}
+
 void SetMatrix(vtkShaderProgram* program, const char* name, const Eigen::Matrix3d& matrix) {
   Eigen::Matrix3f columns = matrix.cast<float>(); // column-major, as OpenGL reads it
   program->SetUniformMatrix3x3(name, columns.data());
@@ -211,15 +244,28 @@ void BodyDrawer::DrawSurface(const CustomDrawing& drawing, const BodyView& view,
   if (small) {
     defines = DiscDefine(view, drawing.samples);
   }
+  const PointLook point = small ? PointLookOf(shape, view, drawing) : PointLook();
+  if (point.spread > 0.0) {
+    defines = "#define DSPACE_DISC 16\n#define DSPACE_SPREAD\n";
+  }
   vtkShaderProgram* program = this->Ready(drawing, view, features, defines, Body_frag);
+  if (point.spread > 0.0) {
+    // That of a sample's square is added.
+    const double variance = point.spread * point.spread + 1.0 / 12.0;
+    const double brightness = point.gain * std::max(shape.brightness, 1.0);
+    const float values[2] = {float(0.5 / variance), float(0.5 / (M_PI * variance))};
+    program->SetUniform2f("discSpread", values);
+    SetBox(program, "boxNDC",
+           view.BoxNDC(drawing.view, ReachOf(view, drawing, brightness, variance)));
+  }
   const Eigen::Matrix3d linear = drawing.object.X_VO.linear();
   SetVector(program, "bodyRadii", shape.radii);
   SetMatrix(program, "viewFromNormal",
             linear.inverse().transpose() * std::cbrt(std::abs(linear.determinant())));
   Eigen::Vector3d color = Linear(material.color.value_or(std::array<double, 3>{1, 1, 1}));
-  SetVector(program, "bodyColor", color * (shape.sun ? 0.0 : shape.brightness));
+  SetVector(program, "bodyColor", color * (shape.sun ? 0.0 : shape.brightness * point.gain));
   Eigen::Vector3d emission = Linear(material.emissive.value_or(std::array<double, 3>{0, 0, 0}));
-  emission *= drawing.light ? 1.0 : drawing.view.look.exposure;
+  emission *= point.gain * (drawing.light ? 1.0 : drawing.view.look.exposure);
   if (shape.sun) {
     // A disc of even radiance whose irradiance at 1 au is the light's.
     const double sine = shape.radii.maxCoeff() / AstronomicalUnit;

@@ -115,11 +115,11 @@ BodyView::BodyView(const Eigen::Affine3d& X_VO, const Eigen::Vector3d& radii,
   }
 }
 
-Eigen::Vector4d BodyView::BoxNDC(const DrawView& view) const {
+Eigen::Vector4d BodyView::BoxNDC(const DrawView& view, double margin) const {
   Eigen::Vector4d ndc;
   for (int i = 0; i < 4; ++i) {
     const double size = i % 2 == 0 ? view.width : view.height;
-    const double place = this->box[i] + this->pivot[i % 2] + (i < 2 ? -1.0 : 1.0);
+    const double place = this->box[i] + this->pivot[i % 2] + (i < 2 ? -margin : margin);
     ndc[i] = std::clamp(2.0 * place / size - 1.0, -1.0, 1.0);
   }
   return ndc;

@@ -32,8 +32,8 @@ struct BodyView {
   // `X_VO`: view axes from the body's; `radii` of the ellipsoid [m].
   BodyView(const Eigen::Affine3d& X_VO, const Eigen::Vector3d& radii, const DrawView& view);
 
-  // The box in normalised device coordinates, a sample wider on each side.
-  Eigen::Vector4d BoxNDC(const DrawView& view) const;
+  // The box in normalised device coordinates, `margin` samples wider on each side.
+  Eigen::Vector4d BoxNDC(const DrawView& view, double margin = 1.0) const;
 };
 
 } // namespace dspace

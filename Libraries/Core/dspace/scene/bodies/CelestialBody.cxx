@@ -20,6 +20,10 @@ CelestialBody::CelestialBody(const std::string& object, BodyShape shape)
           "the longitude of the texture's left edge", s.leftEdge_deg, "-360 to 360 degrees");
   Require(s.brightness >= 0.0 && s.brightness <= 1000.0, object, "brightness", s.brightness,
           "0 to 1000");
+  Require(s.pointGain >= 0.0 && s.pointGain <= 1e12, object, "the gain of its point", s.pointGain,
+          "0 to 1e12");
+  Require(s.pointSpread >= 0.0 && s.pointSpread <= 20.0, object, "the spread of its point",
+          s.pointSpread, "0 to 20 pixels");
   Require(s.rings.size() <= 16, object, "the number of its rings", double(s.rings.size()),
           "0 to 16");
   double last = std::max(s.radii.x(), s.radii.y());

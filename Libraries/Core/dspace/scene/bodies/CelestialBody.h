@@ -31,6 +31,11 @@ struct BodyShape {
   double leftEdge_deg = -180.0;
   bool geodetic = false;
   double brightness = 1.0; // multiplies colour and texture in linear light, 0 to 1000
+  // As a star is drawn, where the disc has a radius below CelestialBody::PointRadius: a factor on
+  // its light in pictures for the eye, 0 to 1e12, and the standard deviation of the point spread
+  // [pixels], 0 (none) to 20. Both fade up to CelestialBody::DiscRadius. Not for the Sun.
+  double pointGain = 1.0;
+  double pointSpread = 0.0;
   // The light of the name "sun" comes from it, and its disc shines as bright as that light is.
   bool sun = false;
   bool eclipses = true;        // it hides the Sun from other things
@@ -50,6 +55,9 @@ class CelestialBody : public CustomGeometry {
 public:
   // Of the apparent disc [pixels]: below it the light of the disc is shared out.
   static constexpr double SmallRadius = 12.0;
+  // Likewise: where the body is a point, and where it is a disc, for BodyShape::pointGain.
+  static constexpr double PointRadius = 0.5;
+  static constexpr double DiscRadius = 2.0;
 
   // Throws Error(InvalidArgument) naming `object` and the value.
   CelestialBody(const std::string& object, BodyShape shape);

@@ -144,6 +144,8 @@ BodyShape ShapeOf(const Context& context, const v1::CreateBody& command, const K
   shape.sun = command.has_sun() ? command.sun() : shape.sun;
   shape.eclipses = command.has_eclipses() ? command.eclipses() : !shape.sun;
   shape.brightness = command.has_brightness() ? command.brightness() : 1.0;
+  shape.pointGain = command.has_point_gain() ? command.point_gain() : 1.0;
+  shape.pointSpread = command.has_point_spread() ? command.point_spread() : 0.0;
   if (command.ring_size() > 0) {
     shape.rings = ToRings(command, label);
   }
@@ -159,6 +161,8 @@ void PutShape(const BodyShape& shape, v1::CreateBody& command) {
   command.set_left_edge_deg(shape.leftEdge_deg);
   command.set_geodetic(shape.geodetic);
   command.set_brightness(shape.brightness);
+  command.set_point_gain(shape.pointGain);
+  command.set_point_spread(shape.pointSpread);
   command.set_sun(shape.sun);
   command.set_eclipses(shape.eclipses);
   command.clear_ring();

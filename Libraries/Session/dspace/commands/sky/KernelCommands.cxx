@@ -36,6 +36,15 @@ void Describe(const KernelSet& kernels, v1::KernelsReply* reply,
     out->set_begin_s(segment.begin);
     out->set_end_s(segment.end);
   }
+  for (const KernelContent& content : kernels.Contents()) {
+    v1::KernelsReply::Content* out = reply->add_content();
+    out->set_file(content.file);
+    out->set_kind(content.kind);
+    out->set_variables(content.variables);
+    for (const std::string& item : content.items) {
+      out->add_item(item);
+    }
+  }
   for (const FrameInfo* info : kernels.GetFrames().Table().Loaded()) {
     v1::KernelsReply::Frame* frame = reply->add_frame();
     frame->set_name(info->name);
@@ -95,6 +104,10 @@ void LoadKernels(const Context& context, v1::LoadKernels& command) {
     kernels = kernels->With(path);
   }
   Describe(*kernels, context.reply.mutable_kernels(), context.reply.mutable_warning());
+  const std::string lacking = kernels->Scales().GetLeapSeconds().Lacking();
+  if (!lacking.empty()) {
+    context.reply.add_warning(lacking);
+  }
   context.scene->sky.kernels = kernels;
 }
 

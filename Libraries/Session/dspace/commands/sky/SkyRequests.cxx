@@ -116,14 +116,18 @@ void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
     Reject("body '" + command.body() + "'",
            "the point below an observer is asked for, without an observer; accepted: one");
   }
+  const Correction correction = command.correction().empty()
+                                    ? Correction::ConvergedStar
+                                    : dspace::CorrectionOf(command.correction());
   v1::SubPointsReply* reply = context.reply.mutable_sub_points();
   reply->set_frame(frame);
   for (const double tdb : TimesOf(context, command)) {
     FallbackScope::Begin(tdb);
     const SubPoint point =
         command.below_observer()
-            ? SubObserverPoint(ephemeris, kernels.GetFrames(), body, frame, *observer, tdb)
-            : SubSolarPoint(ephemeris, kernels.GetFrames(), body, frame, tdb, observer);
+            ? SubObserverPoint(ephemeris, kernels.GetFrames(), body, frame, *observer, tdb,
+                               correction)
+            : SubSolarPoint(ephemeris, kernels.GetFrames(), body, frame, tdb, observer, correction);
     reply->add_point(point.longitude_deg);
     reply->add_point(point.latitude_deg);
     reply->add_point(point.geodetic_latitude_deg);
@@ -133,6 +137,7 @@ void FindSubPoints(const Context& context, v1::FindSubPoints& command) {
 
 void ConvertTimes(const Context& context, v1::ConvertTimes& command) {
   const TimeScales& scales = context.scene->sky.kernels->Scales();
+  const TimeScale scale = command.scale().empty() ? TimeScale::Utc : TimeScaleOf(command.scale());
   v1::TimesReply* reply = context.reply.mutable_times();
   for (const std::string& text : command.text()) {
     reply->add_time_s(TdbFromText(text, scales));
@@ -143,11 +148,14 @@ void ConvertTimes(const Context& context, v1::ConvertTimes& command) {
   std::string expired;
   for (int i = 0; i < reply->time_s_size(); ++i) {
     const double tdb = reply->time_s(i);
-    if (i < command.text_size() && tdb < Utc1960) {
+    if (i < command.text_size() && tdb < Utc1960 && scale == TimeScale::Utc) {
       reply->add_utc(""); // a text in another scale
       continue;
     }
-    reply->add_utc(UtcText(tdb, scales, int(command.decimals())));
+    reply->add_utc(TimeText(tdb, scale, scales, int(command.decimals())));
+    if (tdb < Utc1960) {
+      continue;
+    }
     const int day = scales.UtcFromTai(scales.Convert(tdb, TimeScale::Tdb, TimeScale::Tai)).mjd;
     if (expired.empty()) {
       expired = scales.GetLeapSeconds().WarningAt(day);
