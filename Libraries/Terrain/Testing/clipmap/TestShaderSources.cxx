@@ -399,7 +399,8 @@ void Programs::AddBodies() {
   pages.whole = surface.c_str();
   const Shaders::Features lit = Shaders::Lit | 1u << Shaders::LightShift;
   const Shaders::Features placed = lit | Shaders::SunPlace;
-  for (const char* disc : {"", "#define DSPACE_DISC 12\n"}) {
+  for (const char* disc :
+       {"", "#define DSPACE_DISC 12\n", "#define DSPACE_DISC 16\n#define DSPACE_SPREAD\n"}) {
     pages.defines = disc;
     for (const Shaders::Features features :
          {Shaders::Features(0), lit, placed, placed | Shaders::Eclipses,
