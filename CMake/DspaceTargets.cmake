@@ -115,14 +115,15 @@ endfunction()
 set(DSPACE_TEST_ENVIRONMENT
   "DISPLAY=;DSPACE_SHIPPED_DATA=${CMAKE_SOURCE_DIR}/Data;ASAN_OPTIONS=detect_leaks=0;XDG_CACHE_HOME=${CMAKE_BINARY_DIR}/Testing/cache")
 
-# dspace_tests(PROGRAM [GRAPHICS | WINDOWS] SOURCES ... [HEADERS ...] [LIBS ...]): one GoogleTest program. ctest
+# dspace_tests(PROGRAM [GRAPHICS | WINDOWS] SOURCES ... [HEADERS ... | HEADERS_OF PROGRAM] [LIBS ...]): one GoogleTest program. ctest
 # lists one test for each source Test*.cxx, by the source's name, and runs each in a process of its own.
 # GRAPHICS: the tests need an OpenGL context; they run without a display, and fail at errors that
-# OpenGL reports. WINDOWS: they need a display, and have one of their own. HEADERS are precompiled.
+# OpenGL reports. WINDOWS: they need a display, and have one of their own. HEADERS are precompiled, or those
+# of another program are used, which has the same options.
 # Tests find real data through DSPACE_DATA, and skip where it is absent; data that ship through
 # DSPACE_SHIPPED_DATA.
 function(dspace_tests program)
-  cmake_parse_arguments(arg "GRAPHICS;WINDOWS" "" "SOURCES;HEADERS;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "GRAPHICS;WINDOWS" "HEADERS_OF" "SOURCES;HEADERS;LIBS" ${ARGN})
   if(NOT DSPACE_TESTS)
     return()
   endif()
@@ -132,9 +133,13 @@ function(dspace_tests program)
   foreach(source IN LISTS arg_SOURCES)
     get_filename_component(folder "${CMAKE_CURRENT_SOURCE_DIR}/${source}" DIRECTORY)
     target_include_directories(${program} PRIVATE "${folder}") # for the support headers beside it
-    # Most of the time goes into headers: four sources of a folder are compiled together.
+    # Most of the time goes into headers: eight sources of a folder are compiled together, or four.
     string(MAKE_C_IDENTIFIER "${folder}" room)
-    math(EXPR part "0${count_${room}} / 4")
+    set(together 8)
+    if(folder MATCHES "/(frames|scene|layers)$") # whose helpers share names
+      set(together 4)
+    endif()
+    math(EXPR part "0${count_${room}} / ${together}")
     math(EXPR count_${room} "0${count_${room}} + 1")
     set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${program}_${room}_${part}")
   endforeach()
@@ -142,7 +147,11 @@ function(dspace_tests program)
   target_link_libraries(${program} PRIVATE ${arg_LIBS} DspaceOptions GTest::gtest GTest::gtest_main)
   # Compiling the tests costs more than running them: -O1 takes half the time of -O3.
   target_compile_options(${program} PRIVATE $<$<CONFIG:Release>:-O1>)
-  target_precompile_headers(${program} PRIVATE <Eigen/Geometry> <gtest/gtest.h> ${arg_HEADERS})
+  if(arg_HEADERS_OF)
+    target_precompile_headers(${program} REUSE_FROM ${arg_HEADERS_OF})
+  else()
+    target_precompile_headers(${program} PRIVATE <Eigen/Geometry> <gtest/gtest.h> ${arg_HEADERS})
+  endif()
   set(environment "${DSPACE_TEST_ENVIRONMENT}")
   set(start)
   if(arg_GRAPHICS)

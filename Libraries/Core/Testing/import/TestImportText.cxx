@@ -15,7 +15,7 @@ namespace {
 // "Mäst" in Latin-1 and in UTF-8.
 const std::string Latin = "M\xE4st";
 const std::string Name = "M\xC3\xA4st";
-const std::string Faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string ObjFaces = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
 
 void ExpectUtf8(const Model& model) {
   for (const Mesh& mesh : model.meshes) {
@@ -54,7 +54,7 @@ TEST(ImportText, ObjAndItsMaterials) {
   folder.Write("M\xC3\xA4st.png", DecodeBase64(FourColorsPng));
   folder.Write("M\xC3\xA4st.mtl", "newmtl " + Latin + "\nKd 1 0 0\nmap_Kd " + Latin + ".png\n");
   const Model model = ReadModel(folder.Write("a.obj", "mtllib " + Latin + ".mtl\ng " + Latin +
-                                                          "\nusemtl " + Latin + "\n" + Faces +
+                                                          "\nusemtl " + Latin + "\n" + ObjFaces +
                                                           "f 1 2 3\nusemtl nicht \xFC"
                                                           "berall\nf 1 2 3\n"));
   ExpectUtf8(model);
@@ -69,8 +69,8 @@ TEST(ImportText, ObjAndItsMaterials) {
 TEST(ImportText, MaterialsOfOneNameInTwoEncodings) {
   const TempFolder folder;
   folder.Write("a.mtl", "newmtl " + Name + "\nKd 1 0 0\nnewmtl " + Latin + "\nKd 0 1 0\n");
-  const Model model =
-      ReadModel(folder.Write("a.obj", "mtllib a.mtl\nusemtl " + Name + "\n" + Faces + "f 1 2 3\n"));
+  const Model model = ReadModel(
+      folder.Write("a.obj", "mtllib a.mtl\nusemtl " + Name + "\n" + ObjFaces + "f 1 2 3\n"));
   EXPECT_TRUE(HasWarning(model.warnings, "material '" + Name + "' is defined twice"));
   EXPECT_EQ(model.materials.at(std::size_t(model.meshes.at(0).material)).color[0], 1.0);
 }
@@ -156,7 +156,7 @@ TEST(ImportText, PlyAndStl) {
 
 TEST(ImportText, UrdfNamesFilesAndCharacterReferences) {
   const TempFolder folder;
-  folder.Write(Name + ".obj", Faces + "f 1 2 3\n");
+  folder.Write(Name + ".obj", ObjFaces + "f 1 2 3\n");
   const Urdf robot = ReadUrdf(folder.Write(
       "a.urdf",
       Robot(Link("base", "<visual name=\"" + Latin + "\"><geometry><mesh filename=\"" + Latin +
@@ -201,10 +201,10 @@ TEST(ImportText, FilesWhoseNamesAreNotUtf8) {
   // The reference is read as UTF-8, the file's own name is not: it is another one.
   folder.Write(Latin + ".mtl", "newmtl a\nKd 1 0 0\n");
   const Model model =
-      ReadModel(folder.Write("a.obj", "mtllib " + Latin + ".mtl\n" + Faces + "f 1 2 3\n"));
+      ReadModel(folder.Write("a.obj", "mtllib " + Latin + ".mtl\n" + ObjFaces + "f 1 2 3\n"));
   EXPECT_TRUE(HasWarning(model.warnings, Name + ".mtl': does not exist"));
   ExpectReadError(Error::Kind::Unsupported, "is not UTF-8",
-                  folder.Write(Latin + ".obj", Faces + "f 1 2 3\n"));
+                  folder.Write(Latin + ".obj", ObjFaces + "f 1 2 3\n"));
   ExpectError(Error::Kind::Unsupported, "is not UTF-8",
               [&] { ReadUrdf(folder.Write(Latin + ".urdf", Robot(Link("base")))); });
 }

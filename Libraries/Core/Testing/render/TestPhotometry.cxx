@@ -38,7 +38,7 @@ struct PhotometryTest : RenderingFixture {
   }
 };
 
-Reflectance Of(Law model) {
+Reflectance ReflectanceBy(Law model) {
   Reflectance made;
   made.model = model;
   return made;
@@ -52,14 +52,15 @@ double Degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 TEST_F(PhotometryTest, EachModelOnASphereIsTheReferencePixelByPixel) {
   SetSun(0.7);
-  Reflectance smooth = Of(Law::Hapke);
+  Reflectance smooth = ReflectanceBy(Law::Hapke);
   smooth.roughness_deg = 0.0;
-  Reflectance weighted = Of(Law::LunarLambert);
+  Reflectance weighted = ReflectanceBy(Law::LunarLambert);
   weighted.lunarWeight = 0.3;
   const Eigen::Vector3d center(4, 0, 0);
   const auto mesh = std::make_shared<const Mesh>(MakeSphere(1.0, 512));
-  for (const Reflectance& reflectance : {Of(Law::Lambert), Of(Law::LommelSeeliger),
-                                         Of(Law::LunarLambert), weighted, Of(Law::Hapke), smooth}) {
+  for (const Reflectance& reflectance :
+       {ReflectanceBy(Law::Lambert), ReflectanceBy(Law::LommelSeeliger),
+        ReflectanceBy(Law::LunarLambert), weighted, ReflectanceBy(Law::Hapke), smooth}) {
     GraphicsObject ball;
     ball.name = "ball";
     ball.levels = {{{{mesh, std::make_shared<Material>()}}, 0.0}};
@@ -130,7 +131,7 @@ TEST_F(PhotometryTest, ALambertianPlaneAtOneAuHasTheRadianceOfItsAlbedo) {
     SetSun();
     auto material = std::make_shared<Material>();
     material->color = {0.5, 0.25, 1.0};
-    material->reflectance = Of(Law::Lambert);
+    material->reflectance = ReflectanceBy(Law::Lambert);
     GraphicsObject wall = Object("wall", RootFrame, PlaneTowardsCamera(40, 40), material);
     wall.X_FO.translation() = Eigen::Vector3d(10, 0, 0);
     const ObjectId id = scene->AddObject(wall);
@@ -159,7 +160,7 @@ TEST_F(PhotometryTest, RadianceIsNotLimited) {
   GraphicsObject wall =
       Object("wall", RootFrame, PlaneTowardsCamera(40, 40), std::make_shared<Material>());
   wall.X_FO.translation() = Eigen::Vector3d(10, 0, 0);
-  wall.material.reflectance = Of(Law::Lambert);
+  wall.material.reflectance = ReflectanceBy(Law::Lambert);
   wall.material.color = {1, 1, 1};
   scene->AddObject(wall);
   // Glass before it lets three quarters pass.
@@ -205,7 +206,7 @@ TEST_F(PhotometryTest, EarthshineAddsToTheSunAsLambertSays) {
   GraphicsObject wall =
       Object("wall", RootFrame, PlaneTowardsCamera(40, 40), std::make_shared<Material>());
   wall.X_FO.translation() = Eigen::Vector3d(10, 0, 0);
-  wall.material.reflectance = Of(Law::Lambert);
+  wall.material.reflectance = ReflectanceBy(Law::Lambert);
   wall.material.color = {1, 1, 1};
   scene->AddObject(wall);
   auto viewport = View(Size, Size);
@@ -230,7 +231,7 @@ TEST_F(PhotometryTest, ADiscIsCutByTheSurfacesOwnHorizon) {
   GraphicsObject ball =
       Object("ball", RootFrame, MakeSphere(1.0, 512), std::make_shared<Material>());
   ball.X_FO.translation() = center;
-  ball.material.reflectance = Of(Law::Lambert);
+  ball.material.reflectance = ReflectanceBy(Law::Lambert);
   ball.material.color = {1, 1, 1};
   scene->AddObject(ball);
   for (const double radius : {0.95, 10.0, 45.0, 90.0}) {
@@ -294,7 +295,7 @@ TEST_F(PhotometryTest, AReflectanceOutOfRangeChangesNothing) {
   GraphicsObject ball = Object("ball", RootFrame, MakeSphere(1.0), std::make_shared<Material>());
   const ObjectId id = scene->AddObject(ball);
   MaterialOverride over;
-  over.reflectance = Of(Law::Hapke);
+  over.reflectance = ReflectanceBy(Law::Hapke);
   over.reflectance->oppositionWidth = 0.0;
   EXPECT_THROW(scene->SetObjectMaterial(id, over), Error);
   EXPECT_FALSE(scene->Object(id).material.reflectance.has_value());

@@ -37,7 +37,7 @@ void Write(const std::string& path, const std::string& content) {
 }
 
 // Of all sizes, from a few bytes to several pages, whose content follows from its number.
-v1::Command Numbered(std::uint64_t i) {
+v1::Command Sized(std::uint64_t i) {
   v1::Command command;
   if (i % 5 == 0) {
     command.mutable_set_time()->set_time_s(double(i) / 5.0);
@@ -65,7 +65,7 @@ protected:
     options.snapshotBytes = 1u << 30;
     session::RecordingWriter writer(path, session::Ledger(), 0.0, options);
     for (std::uint64_t i = 1; i <= count; ++i) {
-      writer.Add(Numbered(i), {}, session::Ledger());
+      writer.Add(Sized(i), {}, session::Ledger());
     }
     EXPECT_EQ(writer.Flush(), "");
   }
@@ -189,7 +189,7 @@ TEST_F(Salvage, AnyOnePageMayBeLost) {
 TEST_F(Salvage, TheLogBesideItCounts) {
   session::RecordingWriter writer(this->Of("whole"), session::Ledger(), 0.0);
   for (std::uint64_t i = 1; i <= 60; ++i) {
-    writer.Add(Numbered(i), {}, session::Ledger());
+    writer.Add(Sized(i), {}, session::Ledger());
   }
   ASSERT_EQ(writer.Flush(), "");
   std::filesystem::copy_file(this->Of("whole"), this->Of("bad"));

@@ -458,6 +458,15 @@ void Programs::AddBenchmark() {
   ++this->count;
 }
 
+// Made once for all cases.
+Programs& Everything() {
+  static Programs programs;
+  if (programs.count == 0) {
+    programs.AddEverything();
+  }
+  return programs;
+}
+
 // Names of macros after `directive`.
 std::set<std::string> Macros(const std::string& text, const std::regex& directive) {
   static const std::regex word("DSPACE_[A-Z0-9_]+");
@@ -479,8 +488,7 @@ TEST(ShaderSources, EveryProgramIsValid) {
   if (!testing::ShaderValidator::Installed()) {
     DSPACE_MISSING_PACKAGE("glslang-tools");
   }
-  Programs programs;
-  programs.AddEverything();
+  Programs& programs = Everything();
   EXPECT_EQ(programs.validator.Check(), "");
   std::cout << programs.count << " programs, " << programs.validator.Texts().size()
             << " different shaders, " << programs.validator.Links() << " programs linked\n";
@@ -488,8 +496,7 @@ TEST(ShaderSources, EveryProgramIsValid) {
 
 // A new file or macro of shaders that this test does not reach is an error here.
 TEST(ShaderSources, EveryFileAndFeatureIsAmongThem) {
-  Programs programs;
-  programs.AddEverything();
+  Programs& programs = Everything();
   std::string corpus;
   for (const auto& text : programs.validator.Texts()) {
     corpus += text.first;

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr int Side = 400;
 
-double Height(int c, int r) {
+double HeightAt(int c, int r) {
   return 1000.0 + (c * 7919 + r * 104729 + c * r % 977) % 100003 / 64.0;
 }
 
@@ -34,7 +34,7 @@ std::string Write(const std::string& path, const std::string& kind) {
   file.height = Side;
   file.type = GDT_Float32;
   file.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
-  file.value = [](int c, int r, int) { return Height(c, r); };
+  file.value = [](int c, int r, int) { return HeightAt(c, r); };
   auto* plain = GDALDataset::Open(file.Write(path + ".plain.tif").c_str(), GDAL_OF_RASTER);
   CPLStringList options;
   options.SetNameValue("COMPRESS", kind == "TILED" ? "NONE" : kind.c_str());
@@ -69,7 +69,7 @@ void ExpectHeights(const std::vector<double>& heights) {
   ASSERT_EQ(heights.size(), std::size_t(Side) * Side);
   int wrong = 0;
   for (int i = 0; i < Side * Side; ++i) {
-    wrong += heights[i] != float(Height(i % Side, i / Side));
+    wrong += heights[i] != float(HeightAt(i % Side, i / Side));
   }
   EXPECT_EQ(wrong, 0);
 }
@@ -94,7 +94,7 @@ TEST(DamagedRaster, AFileThatShrinksWhileOpenIsNotRead) {
       SCOPED_TRACE(kind + " " + std::to_string(part));
       const std::string path = Write(folder / "shrinks.tif", kind);
       const ElevationSource source(path);
-      EXPECT_EQ(source.Read({0, 0, 1, 1})[0], float(Height(0, 0)));
+      EXPECT_EQ(source.Read({0, 0, 1, 1})[0], float(HeightAt(0, 0)));
       fs::resize_file(path, std::uintmax_t(double(fs::file_size(path)) * part));
       for (const int factor : {1, 4}) {
         const std::string said = Rejection(source, {0, 0, Side, Side}, Error::Kind::Io, factor);
@@ -295,7 +295,7 @@ TEST(DamagedRaster, GapsOfAMosaicAreHoles) {
     if (c >= 400 && c < 477) {
       ASSERT_TRUE(std::isnan(heights[i])) << c;
     } else {
-      ASSERT_EQ(heights[i], float(Height(c < 400 ? c : c - 477, i / 877))) << c;
+      ASSERT_EQ(heights[i], float(HeightAt(c < 400 ? c : c - 477, i / 877))) << c;
     }
   }
 }

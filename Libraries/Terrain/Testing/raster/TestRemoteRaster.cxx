@@ -26,7 +26,7 @@ using Mode = MisbehavingServer::Mode;
 constexpr int Size = 1024;
 
 // Hardly compressible, so that a read asks for a range of its own.
-double Height(int c, int r) {
+double HeightAt(int c, int r) {
   return ((c * 7919 + r * 104729 + c * r % 977) % 100003) / 64.0;
 }
 
@@ -37,7 +37,7 @@ std::string WriteCog(const std::string& path, const char* compression) {
   plain.height = Size;
   plain.type = GDT_Float32;
   plain.geotransform = std::array<double, 6>{0, 1, 0, 0, 0, -1};
-  plain.value = [](int c, int r, int) { return Height(c, r); };
+  plain.value = [](int c, int r, int) { return HeightAt(c, r); };
   auto* source = GDALDataset::Open(plain.Write(path + ".plain.tif").c_str(), GDAL_OF_RASTER);
   const std::string compress = std::string("COMPRESS=") + compression;
   const char* options[] = {compress.c_str(), "BLOCKSIZE=128", "OVERVIEWS=AUTO",
@@ -137,7 +137,7 @@ void ExpectHeights(const ElevationSource& source, const RasterWindow& w) {
       for (int j = 0; j < part.height; ++j) {
         for (int i = 0; i < part.width; ++i) {
           wrong += heights[std::size_t(j) * std::size_t(part.width) + std::size_t(i)] !=
-                   Height(part.column + i, part.row + j);
+                   HeightAt(part.column + i, part.row + j);
         }
       }
     }
@@ -327,7 +327,7 @@ TEST_F(Remote, TheCoarserLevelStaysAndTheFinerComesLater) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
     for (int i = 0; i < 50 * 50; ++i) {
-      ASSERT_EQ(near[i], float(Height(700 + i % 50, 700 + i / 50)));
+      ASSERT_EQ(near[i], float(HeightAt(700 + i % 50, 700 + i / 50)));
     }
     if (KeepsWaiting(mode)) { // the pyramid ends with reads under way
       server.mode = Mode::Silent;

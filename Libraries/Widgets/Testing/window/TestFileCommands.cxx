@@ -18,6 +18,7 @@
 
 #include "OneApplication.h"
 #include "OpenedFiles.h"
+#include "ShippedFiles.h"
 #include "vtkDspaceSession.h"
 
 #include <dspace/FilesRead.h>
@@ -32,10 +33,6 @@ using namespace dspace;
 using namespace dspace::widgets;
 
 namespace {
-
-QString ShippedData() {
-  return QString::fromUtf8(std::getenv("DSPACE_SHIPPED_DATA"));
-}
 
 // A model whose reading takes long: a box of many triangles, as OBJ.
 void WriteLargeModel(const QString& path, int side) {

@@ -15,6 +15,7 @@
 #include <QtTest>
 
 #include "OneApplication.h"
+#include "ShippedFiles.h"
 #include "vtkDspaceViewport.h"
 
 #include <dspace/widgets/console/ConsoleWidget.h>
@@ -28,10 +29,6 @@ using dspace::widgets::MainWindow;
 using dspace::widgets::ViewportWidget;
 
 namespace {
-
-QString ShippedData() {
-  return QString::fromUtf8(std::getenv("DSPACE_SHIPPED_DATA"));
-}
 
 // One window for all cases: a process has one interpreter of Python.
 class MainWindowTest : public ::testing::Test {
