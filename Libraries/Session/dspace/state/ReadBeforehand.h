@@ -11,6 +11,7 @@
 
 namespace dspace::session {
 
+struct OpenedLayer;
 class TerrainObject;
 
 // Filled by ReadFiles (commands/beforehand) in any one thread, then used by one command in the
@@ -28,7 +29,10 @@ struct ReadBeforehand {
   std::unique_ptr<TerrainObject> terrain; // null: none was read
   std::string openedTerrain;              // the command as recorded, without ids
   std::vector<std::string> warnings;      // of the terrain
-  FilesRead files;                        // likewise
+  FilesRead files;                        // likewise, or of the layer
+
+  std::string askedLayer;             // the command that adds a layer to a terrain, serialized
+  std::shared_ptr<OpenedLayer> layer; // null: none was read
 
   // What the commands of this thread may use; null: nothing.
   static ReadBeforehand* Current();

@@ -125,6 +125,85 @@ TEST_F(FileCommandsTest, ATerrainIsOpenedInTheOtherThread) {
   EXPECT_EQ(Number("len(scene.terrains)"), 2 + QString::fromStdString(before).count("'") / 2);
 }
 
+// Triangles with a relief whose light is that of the scene's Sun when the command is given.
+TEST_F(FileCommandsTest, ATerrainOfTrianglesIsOpenedInTheOtherThread) {
+  vtkNew<vtkDspaceSession> other;
+  session::Interpreter& interpreter = other->GetInterpreter();
+  v1::Command make;
+  make.set_scene("scene");
+  make.mutable_create_scene();
+  ASSERT_FALSE(interpreter.Execute(make).has_error());
+  v1::Command sun;
+  sun.set_scene("scene");
+  v1::SetLight& light = *sun.mutable_set_light();
+  light.set_name("sun");
+  light.mutable_direction()->set_x(-0.6);
+  light.mutable_direction()->set_z(-0.8);
+  ASSERT_FALSE(interpreter.Execute(sun).has_error());
+  v1::Command plain;
+  plain.set_scene("scene");
+  plain.mutable_open_terrain()->set_path(ShippedData().toStdString() + "/field/field.tif");
+  plain.mutable_open_terrain()->set_mode(v1::OpenTerrain::TRIANGLES);
+  v1::Command command = plain;
+  ASSERT_FALSE(interpreter.Execute(plain).has_error()); // reads by itself
+  EXPECT_NEAR(plain.open_terrain().relief().sun_elevation_deg(), 53.13, 0.1);
+  const session::StateBeforehand state = session::NameBeforehand(interpreter.GetState(), command);
+  EXPECT_EQ(command.open_terrain().name(), "terrain 2");
+  const auto read = session::ReadFiles(command, state);
+  ASSERT_TRUE(read->terrain);
+  const session::ReadBeforehand::Scope scope(read.get());
+  const v1::Reply reply = interpreter.Execute(command);
+  ASSERT_FALSE(reply.has_error()) << reply.error().message();
+  EXPECT_FALSE(read->terrain); // it was taken
+  EXPECT_EQ(command.open_terrain().relief().SerializeAsString(),
+            plain.open_terrain().relief().SerializeAsString());
+}
+
+// A layer that was opened for another ground of the same name is opened again.
+TEST_F(FileCommandsTest, ALayerIsOpenedInTheOtherThread) {
+  vtkNew<vtkDspaceSession> other;
+  session::Interpreter& interpreter = other->GetInterpreter();
+  const auto give = [&](v1::Command command) {
+    command.set_scene("scene");
+    const v1::Reply reply = interpreter.Execute(command);
+    EXPECT_FALSE(reply.has_error()) << reply.error().message();
+    return command;
+  };
+  v1::Command make, terrain, remove, layer;
+  make.mutable_create_scene();
+  give(make);
+  const std::string field = ShippedData().toStdString() + "/field/";
+  terrain.mutable_open_terrain()->set_path(field + "field.tif");
+  terrain.mutable_open_terrain()->set_mode(v1::OpenTerrain::CLIPMAP);
+  terrain.mutable_open_terrain()->set_name("ground");
+  give(terrain);
+  layer.set_scene("scene");
+  layer.mutable_add_terrain_layer()->set_terrain("ground");
+  layer.mutable_add_terrain_layer()->mutable_image()->set_path(field + "field_color.tif");
+  const auto readLayer = [&] {
+    return session::ReadFiles(layer, session::NameBeforehand(interpreter.GetState(), layer));
+  };
+  const auto read = readLayer();
+  ASSERT_TRUE(read->layer);
+  {
+    const session::ReadBeforehand::Scope scope(read.get());
+    give(layer);
+  }
+  EXPECT_FALSE(read->layer); // it was taken
+  const auto old = readLayer();
+  remove.mutable_remove_terrain()->set_terrain("ground");
+  give(remove);
+  give(terrain);
+  {
+    const session::ReadBeforehand::Scope scope(old.get());
+    give(layer);
+  }
+  EXPECT_TRUE(old->layer);
+  // What is wrong is left to the command.
+  layer.mutable_add_terrain_layer()->set_terrain("nowhere");
+  EXPECT_FALSE(readLayer()->layer);
+}
+
 TEST_F(FileCommandsTest, AFileThatHangsIsCancelled) {
   const QString path = folder->filePath("hangs.glb");
   ASSERT_EQ(mkfifo(path.toUtf8().constData(), 0600), 0);
@@ -197,5 +276,17 @@ TEST_F(FileCommandsTest, TheThreadOfTheWindowsOpensNoModelAndNoRaster) {
     ASSERT_TRUE(window->Open(copy)) << name << errors.toStdString();
     ASSERT_TRUE(Settled());
   }
+  const QString color = copies + "/field_color.tif";
+  ASSERT_EQ(
+      std::system(("cp '" + ShippedData() + "/field/field_color.tif' '" + color + "'").toUtf8()),
+      0);
+  ASSERT_TRUE(Run("watched = list(scene.terrains.values())[-1]\n"
+                  "layers = len(watched.layers)\n"
+                  "watched.add_image(r'" +
+                  color + "')\nwatched.add_false_color(r'" + copies + "/field.tif')"))
+      << errors.toStdString();
+  EXPECT_EQ(Value("len(watched.layers) - layers"), "2");
+  ASSERT_TRUE(Run("scene.add_terrain(r'" + copies + "/field.tif', mode='triangles').remove()"))
+      << errors.toStdString();
   EXPECT_EQ(opened.Below(below), std::vector<std::string>{below + "/nothing"});
 }

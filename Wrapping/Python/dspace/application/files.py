@@ -4,7 +4,7 @@ from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
 
-READING = ("import_object", "import_nodes", "load_robot", "open_terrain")  # commands that may read long
+READING = ("import_object", "import_nodes", "load_robot", "open_terrain", "add_terrain_layer")  # commands that may read long
 
 
 class WindowClient(LocalClient):

@@ -37,20 +37,35 @@ void ReadVisuals(const std::string& path, const ImportOptions& options, ReadBefo
 
 bool ReadsFiles(const v1::Command& command) {
   return command.has_import_object() || command.has_import_nodes() || command.has_load_robot() ||
-         command.has_open_terrain();
+         command.has_open_terrain() || command.has_add_terrain_layer();
 }
 
-void NameBeforehand(State& state, v1::Command& command) {
-  if (!command.has_open_terrain() || !command.open_terrain().name().empty()) {
-    return;
-  }
+StateBeforehand NameBeforehand(State& state, v1::Command& command) {
+  StateBeforehand before;
   const auto scene = state.scenes.find(command.scene());
-  if (scene != state.scenes.end()) {
-    command.mutable_open_terrain()->set_name(FreeTerrainName(scene->second));
+  if (scene == state.scenes.end()) {
+    return before;
   }
+  if (command.has_add_terrain_layer()) {
+    before.layer = LayerReader(scene->second, command.add_terrain_layer());
+  }
+  if (!command.has_open_terrain()) {
+    return before;
+  }
+  v1::OpenTerrain& terrain = *command.mutable_open_terrain();
+  if (terrain.name().empty()) {
+    terrain.set_name(FreeTerrainName(scene->second));
+  }
+  try {
+    before.sun_S = ReliefSun(*scene->second.scene, terrain);
+  } catch (const Error&) {
+    // The command says which frame it does not find.
+  }
+  return before;
 }
 
-std::shared_ptr<ReadBeforehand> ReadFiles(const v1::Command& command) {
+std::shared_ptr<ReadBeforehand> ReadFiles(const v1::Command& command,
+                                          const StateBeforehand& state) {
   auto read = std::make_shared<ReadBeforehand>();
   if (command.has_import_object()) {
     ReadModels(command.import_object(), *read);
@@ -64,7 +79,9 @@ std::shared_ptr<ReadBeforehand> ReadFiles(const v1::Command& command) {
       ReadVisuals(level.path(), options, *read);
     }
   } else if (command.has_open_terrain()) {
-    ReadTerrain(command.open_terrain(), *read);
+    ReadTerrain(command.open_terrain(), state.sun_S, *read);
+  } else if (state.layer) {
+    state.layer(*read);
   }
   return read;
 }

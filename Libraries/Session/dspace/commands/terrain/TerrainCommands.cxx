@@ -82,15 +82,14 @@ TerrainPatch ToPatch(v1::OpenTerrain::Patch& from) {
 }
 
 // Absent angles of the shaded relief become those of the scene's Sun at the middle of the terrain,
-// where it is on and above the horizon.
-void PutReliefSun(const Context& context, const GridTerrain& grid, v1::OpenTerrain& command) {
-  const Light* sun = FindSunLight(context.GetScene());
-  if (command.has_color() || command.has_drape() || !sun || !IsSun(*sun) || !sun->enabled) {
+// where it is above the horizon. `towards_S`: ReliefSun().
+void PutReliefSun(const std::optional<Eigen::Vector3d>& towards_S, const GridTerrain& grid,
+                  v1::OpenTerrain& command) {
+  if (!towards_S) {
     return;
   }
-  const Eigen::Vector3d towards_S = TowardsSun(context.GetScene(), *sun, ToFrame(command.frame()));
   const Eigen::Vector2d angles =
-      ToHorizontal(HorizontalAxes(grid, PlaceOf(grid)).transpose() * towards_S);
+      ToHorizontal(HorizontalAxes(grid, PlaceOf(grid)).transpose() * *towards_S);
   if (!(angles[1] > 0.0)) {
     return;
   }
@@ -103,8 +102,11 @@ void PutReliefSun(const Context& context, const GridTerrain& grid, v1::OpenTerra
   }
 }
 
+// Uses nothing of the context's scene.
 std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::string& name,
-                                        const std::string& path, v1::OpenTerrain& command) {
+                                        const std::string& path,
+                                        const std::optional<Eigen::Vector3d>& sun_S,
+                                        v1::OpenTerrain& command) {
   GridTerrainOptions options;
   options.elevation = ToTerrainElevation(command, "terrain '" + name + "'");
   if (command.has_map_origin()) {
@@ -116,7 +118,7 @@ std::unique_ptr<TerrainObject> OpenMesh(const Context& context, const std::strin
   }
   options.subdivisions = int(std::min<std::uint32_t>(command.subdivisions(), 1u << 30));
   const auto grid = GridTerrain::Load(path, options);
-  PutReliefSun(context, *grid, command);
+  PutReliefSun(sun_S, *grid, command);
   auto terrain = std::make_unique<MeshTerrain>(name, grid, MeshMaterial(context, *grid, command),
                                                std::size_t(command.triangle_budget()));
   if (!terrain->Report().budgetMet) {
@@ -334,7 +336,8 @@ void OpenTerrain(const Context& context, v1::OpenTerrain& command) {
     command.set_mode(ModeFor(name, command.path(), command)); // a recording opens the same
     terrain = command.mode() == v1::OpenTerrain::CLIPMAP
                   ? OpenClipmap(context, name, command.path(), command)
-                  : OpenMesh(context, name, command.path(), command);
+                  : OpenMesh(context, name, command.path(), ReliefSun(context.GetScene(), command),
+                             command);
   }
   for (const std::string& warning : terrain->Surface().GetWarnings()) {
     context.reply.add_warning(warning);
@@ -380,18 +383,26 @@ std::string FreeTerrainName(const SceneState& state) {
   return name;
 }
 
-void ReadTerrain(const v1::OpenTerrain& command, ReadBeforehand& into) {
+std::optional<Eigen::Vector3d> ReliefSun(const Scene& scene, const v1::OpenTerrain& command) {
+  const Light* sun = FindSunLight(scene);
+  if (command.has_color() || command.has_drape() || !sun || !IsSun(*sun) || !sun->enabled) {
+    return std::nullopt;
+  }
+  return TowardsSun(scene, *sun, ToFrame(command.frame()));
+}
+
+void ReadTerrain(const v1::OpenTerrain& command, const std::optional<Eigen::Vector3d>& sun_S,
+                 ReadBeforehand& into) {
   v1::OpenTerrain opened = command;
   opened.set_path(AbsoluteRaster(command.path()));
   opened.set_mode(ModeFor(command.name(), opened.path(), opened));
-  if (opened.mode() != v1::OpenTerrain::CLIPMAP) {
-    return;
-  }
   State none;
   v1::Reply reply;
   const Context context{none, nullptr, command.name(), reply};
   const FilesReadScope files;
-  into.terrain = OpenClipmap(context, command.name(), opened.path(), opened);
+  into.terrain = opened.mode() == v1::OpenTerrain::CLIPMAP
+                     ? OpenClipmap(context, command.name(), opened.path(), opened)
+                     : OpenMesh(context, command.name(), opened.path(), sun_S, opened);
   into.files = files.Files();
   into.warnings.assign(reply.warning().begin(), reply.warning().end());
   into.askedTerrain = command.SerializeAsString();

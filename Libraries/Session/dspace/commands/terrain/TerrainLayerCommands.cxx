@@ -6,6 +6,8 @@
 #include <dspace/Checks.h>
 #include <dspace/commands/terrain/ClipmapTerrainObject.h>
 #include <dspace/commands/terrain/MeshTerrain.h>
+#include <dspace/commands/terrain/OpenedLayer.h>
+#include <dspace/commands/terrain/TerrainBeforehand.h>
 #include <dspace/commands/terrain/TerrainLook.h>
 #include <dspace/commands/terrain/TerrainTools.h>
 #include <dspace/layers/NoiseLayer.h>
@@ -22,10 +24,13 @@ namespace {
 
 using Add = v1::AddTerrainLayer;
 
-// A layer and its description.
-struct Opened {
-  std::shared_ptr<const ColorLayer> layer;
-  v1::TerrainLayerReply about;
+// What opening a layer takes from its terrain: any thread may then open it.
+struct LayerGround {
+  RasterPlace place;
+  std::string cacheFolder;
+  // Of a layer that shows a field: the raster of the field, and its unit.
+  std::optional<Add::FalseColor> field;
+  std::string fieldUnit;
 };
 
 ClipmapTerrainObject* AsClipmap(TerrainObject& terrain) {
@@ -76,11 +81,10 @@ template<class Message> RasterLayerOptions ToRaster(const Message& from, std::st
   return options;
 }
 
-template<class Message> Opened OpenImage(const ClipmapTerrainObject& terrain, Message& from) {
+template<class Message> OpenedLayer OpenImage(const LayerGround& ground, Message& from) {
   from.set_path(AbsoluteRaster(from.path()));
-  Opened opened;
-  opened.layer = OpenImageLayer(from.path(), PlaceOf(terrain.Surface()),
-                                ToRaster(from, terrain.CacheFolder()));
+  OpenedLayer opened;
+  opened.layer = OpenImageLayer(from.path(), ground.place, ToRaster(from, ground.cacheFolder));
   opened.about.set_kind(v1::TerrainLayerReply::IMAGE);
   opened.about.set_path(from.path());
   return opened;
@@ -107,7 +111,7 @@ Add::FalseColor ColorOfField(const ClipmapTerrainObject& terrain, const Add& com
   return color;
 }
 
-Opened OpenFalseColor(const ClipmapTerrainObject& terrain, Add::FalseColor& from) {
+OpenedLayer OpenFalseColor(const LayerGround& ground, Add::FalseColor& from) {
   from.set_path(AbsoluteRaster(from.path()));
   FalseColorOptions colors;
   if (from.band() != 0) {
@@ -125,9 +129,9 @@ Opened OpenFalseColor(const ClipmapTerrainObject& terrain, Add::FalseColor& from
   if (from.has_high()) {
     colors.high = from.high();
   }
-  const auto layer = OpenFalseColorLayer(from.path(), PlaceOf(terrain.Surface()), colors,
-                                         ToRaster(from, terrain.CacheFolder()));
-  Opened opened;
+  const auto layer =
+      OpenFalseColorLayer(from.path(), ground.place, colors, ToRaster(from, ground.cacheFolder));
+  OpenedLayer opened;
   opened.layer = layer;
   opened.about.set_kind(v1::TerrainLayerReply::FALSE_COLOR);
   opened.about.set_path(from.path());
@@ -140,12 +144,21 @@ Opened OpenFalseColor(const ClipmapTerrainObject& terrain, Add::FalseColor& from
   return opened;
 }
 
-Opened OpenField(const ClipmapTerrainObject& terrain, const Add& command,
-                 const std::string& label) {
-  Add::FalseColor color = ColorOfField(terrain, command, label);
-  Opened opened = OpenFalseColor(terrain, color);
+LayerGround GroundOf(const ClipmapTerrainObject& terrain, const Add& command,
+                     const std::string& label) {
+  LayerGround ground{PlaceOf(terrain.Surface()), terrain.CacheFolder(), {}, {}};
+  if (!command.field().empty()) {
+    ground.field = ColorOfField(terrain, command, label);
+    ground.fieldUnit = terrain.Fields().Get(command.field()).field->Units();
+  }
+  return ground;
+}
+
+OpenedLayer OpenField(const LayerGround& ground, const Add& command) {
+  Add::FalseColor color = *ground.field;
+  OpenedLayer opened = OpenFalseColor(ground, color);
   opened.about.set_field(command.field());
-  opened.about.set_unit(terrain.Fields().Get(command.field()).field->Units());
+  opened.about.set_unit(ground.fieldUnit);
   return opened;
 }
 
@@ -161,7 +174,7 @@ void PutShade(bool given, const v1::Color& color, const std::string& label, bool
   }
 }
 
-Opened OpenShapes(const ClipmapTerrainObject& terrain, Add::Shapes& from) {
+OpenedLayer OpenShapes(const LayerGround& ground, Add::Shapes& from) {
   from.set_path(AbsoluteRaster(from.path()));
   const std::string label = "shapes '" + from.path() + "'";
   VectorLayerOptions options;
@@ -180,14 +193,14 @@ Opened OpenShapes(const ClipmapTerrainObject& terrain, Add::Shapes& from) {
   }
   options.pixels = from.has_pixels() ? from.pixels() : options.pixels;
   options.point = from.has_point() ? from.point() : options.point;
-  Opened opened;
-  opened.layer = OpenVectorLayer(from.path(), PlaceOf(terrain.Surface()), options);
+  OpenedLayer opened;
+  opened.layer = OpenVectorLayer(from.path(), ground.place, options);
   opened.about.set_kind(v1::TerrainLayerReply::SHAPES);
   opened.about.set_path(from.path());
   return opened;
 }
 
-Opened MakeNoise(const Add::Noise& from) {
+OpenedLayer MakeNoise(const Add::Noise& from) {
   constexpr double Contrast = 0.25;
   NoiseOptions options;
   options.wavelength = from.has_wavelength() ? from.wavelength() : options.wavelength;
@@ -196,24 +209,23 @@ Opened MakeNoise(const Add::Noise& from) {
   }
   options.gain = from.has_gain() ? from.gain() : options.gain;
   options.seed = from.seed();
-  Opened opened;
+  OpenedLayer opened;
   opened.layer = MakeNoiseLayer(options, from.has_contrast() ? from.contrast() : Contrast);
   opened.about.set_kind(v1::TerrainLayerReply::NOISE);
   return opened;
 }
 
-Opened OpenNormals(const TerrainObject& terrain, Add::Normals& from, const std::string& cacheFolder,
-                   const std::string& label) {
+OpenedLayer OpenNormals(const RasterPlace& place, Add::Normals& from,
+                        const std::string& cacheFolder, const std::string& label) {
   if (!Add::Normals::Axes_IsValid(from.axes())) {
     Reject(label, "axes " + std::to_string(from.axes()) +
                       " of normals are not known; accepted: 0 (of the map), 1 (local)");
   }
   from.set_path(AbsoluteRaster(from.path()));
   const bool local = from.axes() == Add::Normals::LOCAL;
-  Opened opened;
-  opened.layer =
-      OpenNormalsLayer(from.path(), terrain.Place(), local ? NormalAxes::Local : NormalAxes::Map,
-                       ToRaster(from, cacheFolder));
+  OpenedLayer opened;
+  opened.layer = OpenNormalsLayer(from.path(), place, local ? NormalAxes::Local : NormalAxes::Map,
+                                  ToRaster(from, cacheFolder));
   opened.about.set_kind(v1::TerrainLayerReply::NORMALS);
   opened.about.set_path(from.path());
   return opened;
@@ -242,21 +254,21 @@ const char* WordFor(Add::KindCase kind) {
   }
 }
 
-Opened Open(const ClipmapTerrainObject& terrain, Add& command, const std::string& label) {
-  if (!command.field().empty()) {
-    return OpenField(terrain, command, label);
+OpenedLayer Open(const LayerGround& ground, Add& command, const std::string& label) {
+  if (ground.field) {
+    return OpenField(ground, command);
   }
   switch (command.kind_case()) {
   case Add::kImage:
-    return OpenImage(terrain, *command.mutable_image());
+    return OpenImage(ground, *command.mutable_image());
   case Add::kFalseColor:
-    return OpenFalseColor(terrain, *command.mutable_false_color());
+    return OpenFalseColor(ground, *command.mutable_false_color());
   case Add::kShapes:
-    return OpenShapes(terrain, *command.mutable_shapes());
+    return OpenShapes(ground, *command.mutable_shapes());
   case Add::kNoise:
     return MakeNoise(command.noise());
   case Add::kNormals:
-    return OpenNormals(terrain, *command.mutable_normals(), terrain.CacheFolder(), label);
+    return OpenNormals(ground.place, *command.mutable_normals(), ground.cacheFolder, label);
   default:
     Reject(label,
            "the layer has no kind; accepted: an image, false colour, shapes, noise, normals");
@@ -297,6 +309,22 @@ void RequireForTriangles(const Add& command, const std::string& label) {
   }
 }
 
+// The layer that was opened before the command (TerrainBeforehand.h), if it lies on this ground.
+OpenedLayer TakeOrOpen(const ClipmapTerrainObject& terrain, Add& command,
+                       const std::string& label) {
+  const LayerGround ground = GroundOf(terrain, command, label);
+  ReadBeforehand* before = ReadBeforehand::Current();
+  if (!before || !before->layer || before->askedLayer != command.SerializeAsString() ||
+      before->layer->ground.lock() != terrain.SharedSurface()) {
+    return Open(ground, command, label);
+  }
+  NoteFilesRead(before->files);
+  command = before->layer->command;
+  OpenedLayer opened = std::move(*before->layer);
+  before->layer.reset();
+  return opened;
+}
+
 void AddTerrainLayer(const Context& context, Add& command) {
   TerrainObject& terrain = FindTerrain(context, command.terrain());
   TerrainLayers& layers = LayersOf(terrain);
@@ -323,8 +351,9 @@ void AddTerrainLayer(const Context& context, Add& command) {
     position = UnderFilled(layers);
   }
   ClipmapTerrainObject* clipmap = AsClipmap(terrain);
-  Opened opened = clipmap ? Open(*clipmap, command, label)
-                          : OpenNormals(terrain, *command.mutable_normals(), "", label);
+  OpenedLayer opened = clipmap
+                           ? TakeOrOpen(*clipmap, command, label)
+                           : OpenNormals(terrain.Place(), *command.mutable_normals(), "", label);
   stacked.layer = opened.layer;
   command.set_name(stacked.name);
   layers.Add(std::move(stacked), position, std::move(opened.about));
@@ -392,7 +421,8 @@ void ListTerrainLayers(const Context& context, v1::ListTerrainLayers& command) {
 
 void AddDrape(const Context& context, ClipmapTerrainObject& terrain,
               v1::OpenTerrain::Drape& drape) {
-  Opened opened = OpenImage(terrain, drape);
+  OpenedLayer opened =
+      OpenImage(LayerGround{PlaceOf(terrain.Surface()), terrain.CacheFolder(), {}, {}}, drape);
   Warn(context, *opened.layer);
   StackedLayer stacked;
   stacked.name = "drape";
@@ -422,6 +452,33 @@ void AddFilled(const Context& context, ClipmapTerrainObject& terrain,
   about.set_kind(v1::TerrainLayerReply::FILLED);
   about.set_path(info.path);
   terrain.Layers().Add(std::move(stacked), std::nullopt, std::move(about));
+}
+
+std::function<void(ReadBeforehand&)> LayerReader(SceneState& state, const Add& command) {
+  const auto found = state.terrains.find(command.terrain());
+  auto* terrain = found == state.terrains.end()
+                      ? nullptr
+                      : dynamic_cast<ClipmapTerrainObject*>(&*found->second);
+  if (!terrain || command.kind_case() == Add::kNoise) {
+    return {}; // nothing is read, or the command reads it, or says what is wrong
+  }
+  const std::string label = "terrain '" + command.terrain() + "'";
+  try {
+    const LayerGround ground = GroundOf(*terrain, command, label);
+    const std::weak_ptr<const StreamedTerrain> surface = terrain->SharedSurface();
+    return [ground, surface, label, command](ReadBeforehand& into) {
+      Add opened = command;
+      const FilesReadScope files;
+      auto layer = std::make_shared<OpenedLayer>(Open(ground, opened, label));
+      layer->command = opened;
+      layer->ground = surface;
+      into.layer = std::move(layer);
+      into.files = files.Files();
+      into.askedLayer = command.SerializeAsString();
+    };
+  } catch (const Error&) {
+    return {}; // the command gives the error
+  }
 }
 
 void AddTerrainLayerCommands(Registry& registry) {

@@ -32,6 +32,12 @@ QString FileOf(const v1::Command& command) {
     path = command.load_robot().path();
   } else if (command.has_open_terrain()) {
     path = command.open_terrain().path();
+  } else if (command.has_add_terrain_layer()) {
+    const v1::AddTerrainLayer& layer = command.add_terrain_layer();
+    path = layer.has_image()         ? layer.image().path()
+           : layer.has_false_color() ? layer.false_color().path()
+           : layer.has_shapes()      ? layer.shapes().path()
+                                     : layer.normals().path();
   }
   return QFileInfo(QString::fromStdString(path)).fileName();
 }
@@ -72,10 +78,11 @@ void FileCommands::Read(const std::string& command) {
   if (!job->command.ParseFromString(command) || !session::ReadsFiles(job->command)) {
     return;
   }
-  session::NameBeforehand(this->Session_->GetInterpreter().GetState(), job->command);
-  std::thread([job] { // it keeps what it uses, also when nobody waits any more
+  const session::StateBeforehand state =
+      session::NameBeforehand(this->Session_->GetInterpreter().GetState(), job->command);
+  std::thread([job, state] { // it keeps what it uses, also when nobody waits any more
     job->failed = session::Catch([&] {
-      job->read = session::ReadFiles(job->command);
+      job->read = session::ReadFiles(job->command, state);
       return v1::Reply();
     });
     job->done.set_value();
