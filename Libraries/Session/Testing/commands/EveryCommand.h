@@ -55,7 +55,7 @@ inline const std::vector<const char*>& Everything() {
       R"(set_camera { name: "eye" mount { look_at { eye { x: 6 y: -7 z: 5 } target { z: 1 } } } })",
       R"(open_terrain { name: "ground" path: "FOLDER/ground.asc" mode: CLIPMAP subdivisions: 5
            fill_holes: 4 build_overviews: false overview_cache: "" })",
-      R"(add_terrain_layer { terrain: "ground" name: "dust" noise {} })",
+      R"(add_terrain_layer { terrain: "ground" name: "dust" noise { octaves: 1 } })",
       R"(add_terrain_field { terrain: "ground" name: "soil" path: "FOLDER/ground.asc" })",
       R"(track_wheels { terrain: "ground" width: 0.3
            wheel { name: "left" contact: [-2, -2, 0, 0.1, 0, 1, -2, 0, 0.1, 3] } })",
