@@ -35,6 +35,7 @@ struct ShadowMap
   int size;
   ivec3 corner; // its first texel, and its layer
   vec2 heights; // of the blockers that it takes, above the receiver's plane
+  bool ground;
 };
 
 const float shadowReach = 7.0; // texels: half the widest penumbra that one map resolves
@@ -101,18 +102,19 @@ float mapLit(ShadowMap map, ShadowReceiver at)
       last = blockers > 0.0 && wide >= 1.0 ? 18 : 6;
     }
   }
+  // Ground beside the foot of a wall is above the wall's plane a texel further down: where the place's own
+  // texel is free, its neighbours alone do not darken it.
+  sharp = map.ground ? max(2.0 * sharp - 1.0, 0.0) : sharp;
   return 1.0 - (last > 6 ? hidden / 48.0 : sharp);
 }
 
 // Each map takes the blockers whose penumbra it resolves, and the last one all: from x to y above the
 // receiver's plane. steep: the length of its slope. coarser: how much larger texels are.
-// lean: how far a blocker must rise over a steep plane, in texels along it. Ground beside the foot of a
-// wall is above the wall's plane a texel further down.
-vec2 cascadeHeights(int k, float coarser, float depth, float steep, float lean)
+vec2 cascadeHeights(int k, float coarser, float depth, float steep)
 {
   vec3 reaches = shadowReaches[k] * vec3(coarser, coarser, 1.0);
   float texel = 2.0 * shadowPlace[k].z / float(shadowSize) * coarser;
-  return vec2(max(depth <= reaches.z ? reaches.y : 0.0, texel * (0.5 + lean * min(steep, 8.0))),
+  return vec2(max(depth <= reaches.z ? reaches.y : 0.0, texel * (0.5 + 0.25 * min(steep, 8.0))),
     k == DSPACE_CASCADES - 1 ? 3e38 : reaches.x);
 }
 
@@ -147,7 +149,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
     ivec2 tile = ivec2(floor((at.place.xy - place.xy) * (32.0 / place.z) + 32.0)); // of 64 x 64
     float above = at.place.z - steep * 3.0 * place.z / float(shadowSize); // the texels about the place
     bool any = depth <= place.w
-      && texelFetch(shadowTops, ivec3(tile, k), 0).r > above + cascadeHeights(k, 1.0, depth, steep, 0.25).x;
+      && texelFetch(shadowTops, ivec3(tile, k), 0).r > above + cascadeHeights(k, 1.0, depth, steep).x;
     maps |= any ? 1 << k : 0;
     count += any ? 1 : 0;
 #if DSPACE_GROUNDS > 0
@@ -156,7 +158,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
     {
       int layer = k + DSPACE_CASCADES * (1 + g);
       any = g != ownGround && depth <= place.w && texelFetch(shadowTops, ivec3(tile, layer), 0).r
-        > above + cascadeHeights(k, grounds, depth, steep, 1.0).x;
+        > above + cascadeHeights(k, grounds, depth, steep).x;
       maps |= any ? 1 << layer : 0;
       count += any ? 1 : 0;
     }
@@ -179,7 +181,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
           bit = 1 << layer;
           map = ShadowMap(shadowPlace[k], shadowRange[k], groundSize,
             ivec3(k % 4 * groundSize, k / 4 * groundSize, DSPACE_CASCADES + g),
-            cascadeHeights(k, grounds, depth, steep, 1.0));
+            cascadeHeights(k, grounds, depth, steep), true);
         }
       }
 #endif
@@ -187,7 +189,7 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
       {
         bit = 1 << k;
         map = ShadowMap(shadowPlace[k], shadowRange[k], shadowSize, ivec3(0, 0, k),
-          cascadeHeights(k, 1.0, depth, steep, 0.25));
+          cascadeHeights(k, 1.0, depth, steep), false);
       }
     }
     maps &= ~bit;
