@@ -39,6 +39,14 @@ public:
   /// Makes the context current and the slot the window's own, until the next call.
   void Activate(const Slot& slot);
   Slot GetSlot() const;
+  /// Notes that `owner` sets uniforms of programs of this window. Returns whether nobody else did
+  /// since it last did: programs are shared by all viewports.
+  bool NoteUniformsOf(const void* owner) {
+    const bool same = this->UniformOwner == owner;
+    this->UniformOwner = owner;
+    return same;
+  }
+
   /// Back to the window's own members: before a slot's framebuffer is destroyed.
   void Deactivate();
 
@@ -60,6 +68,7 @@ private:
   std::unique_ptr<dspace::GraphicsContext> Context;
   vtkOpenGLFramebufferObject* OwnFramebuffers[3];
   vtkRendererCollection* OwnRenderers;
+  const void* UniformOwner = nullptr;
 };
 
 #endif

@@ -233,5 +233,42 @@ TEST(Captions, LegendsLeaveNoneBelowThem) {
   EXPECT_EQ(captions[1].at[1], 300 + y + 1);
 }
 
+// Lines share a program, whose uniforms are set only where they change: also between viewports.
+TEST_F(TrajectoryTest, LinesOfDifferentLooksAndViewportsKeepTheirOwn) {
+  Look({});
+  std::vector<ObjectId> ids;
+  for (int i = 0; i < 4; ++i) {
+    TrajectoryLook look;
+    look.color = {i % 2 == 0 ? 1.0 : 0.0, i < 2 ? 1.0 : 0.0, 1.0};
+    look.before = i == 3 ? 20.0 : look.before;
+    const auto line = std::make_shared<TrajectoryLine>(
+        "line", std::vector<Strip>{Vertical({10.0, 2.0 - 1.3 * i, 0.0}, 4.0, 41)});
+    line->SetLook("line", look);
+    ids.push_back(Add(line, 3.0));
+  }
+  CaptureRequest request;
+  request.label = true;
+  const auto alone = [&](int width) { return View(width, Size)->GetCapture(request); };
+  const Capture wide = alone(Size);
+  const Capture narrow = alone(Size / 2);
+  for (int i = 0; i < 4; ++i) {
+    const int x = int(std::lround(Column({10.0, 2.0 - 1.3 * i, 0.0})));
+    const std::size_t at = std::size_t(100 * Size + x);
+    EXPECT_EQ(wide.label[at], ids[std::size_t(i)]);
+    EXPECT_EQ(wide.color[4 * at], i % 2 == 0 ? 255 : 0) << i;
+    EXPECT_EQ(wide.color[4 * at + 1], i < 2 ? 255 : 0) << i;
+  }
+  const std::size_t late = std::size_t(170 * Size) + std::size_t(Column({10.0, -1.9, 0.0}) + 0.5);
+  EXPECT_EQ(wide.label[late], 0u); // before the window
+  auto first = View(Size, Size);
+  auto second = View(Size / 2, Size);
+  for (int turn = 0; turn < 3; ++turn) {
+    EXPECT_EQ(first->GetCapture(request).color, wide.color) << turn;
+    const Capture again = second->GetCapture(request);
+    EXPECT_EQ(again.color, narrow.color) << turn;
+    EXPECT_EQ(again.label, narrow.label) << turn;
+  }
+}
+
 } // namespace
 } // namespace dspace

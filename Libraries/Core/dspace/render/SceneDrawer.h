@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <unordered_map>
 #include <vector>
 
 #include <dspace/render/CustomDrawer.h>
@@ -113,7 +114,7 @@ private:
     std::weak_ptr<const CustomGeometry> geometry;
     std::unique_ptr<CustomDrawer> drawer;
   };
-  std::map<const CustomGeometry*, Custom> Customs_;
+  std::unordered_map<const CustomGeometry*, Custom> Customs_;
   std::set<ObjectId> Prepared_;     // of the picture, and what throws shadows into it
   std::map<ObjectId, int> Grounds_; // of the picture: ShadowGround
   std::vector<DrawInstance> Uploaded_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "vtk_glew.h"
@@ -130,6 +131,20 @@ void SurfaceShaders::Release() {
   this->Screens_.clear();
   this->Programs_.clear();
   this->SunMasks_.clear();
+  this->Uniforms_.clear();
+}
+
+bool SurfaceShaders::HasUniforms(vtkShaderProgram* program, const void* bytes, std::size_t size) {
+  if (!this->Window_->NoteUniformsOf(this)) {
+    this->Uniforms_.clear();
+  }
+  std::vector<unsigned char>& last = this->Uniforms_[program];
+  if (last.size() == size && std::memcmp(last.data(), bytes, size) == 0) {
+    return true;
+  }
+  const auto* first = static_cast<const unsigned char*>(bytes);
+  last.assign(first, first + size);
+  return false;
 }
 
 namespace {

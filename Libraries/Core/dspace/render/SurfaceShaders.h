@@ -2,11 +2,13 @@
 #ifndef DSPACE_RENDER_SURFACE_SHADERS_H
 #define DSPACE_RENDER_SURFACE_SHADERS_H
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <dspace/render/DrawList.h>
 
@@ -120,6 +122,10 @@ public:
   vtkShaderProgram* SunMask(const DrawList& list, const DrawView& view, unsigned int planes);
   static Sources SunMaskSources(Features features);
 
+  // Whether the uniforms of a program have the values of which `bytes` is an image, from the last
+  // call with that program; else they are to be set now. All that sets them must ask.
+  bool HasUniforms(vtkShaderProgram* program, const void* bytes, std::size_t size);
+
   // Projection, lights and what else is the same for everything in one picture.
   void SetView(vtkShaderProgram* program, const DrawList& list, const DrawView& view, int samples,
                bool firstLayer = false);
@@ -155,6 +161,7 @@ private:
   std::map<const ShaderCode*, Coded> Coded_;
   std::map<std::pair<const char*, std::string>, vtkShaderProgram*> Screens_;
   std::map<std::pair<const char*, const char*>, vtkShaderProgram*> Programs_;
+  std::map<vtkShaderProgram*, std::vector<unsigned char>> Uniforms_; // HasUniforms()
 };
 
 // Binds `name` to a texture unit of the window's state.

@@ -186,6 +186,79 @@ void TrajectoryDrawer::DrawLines(const TrajectoryLine& line) const {
   glBindVertexArray(0);
 }
 
+void TrajectoryDrawer::SetUniforms(const CustomDrawing& drawing, const TrajectoryLine& line,
+                                   vtkShaderProgram* program, const char* fragment,
+                                   bool translucent) {
+  const TrajectoryLook& look = line.Look();
+  const bool timed = fragment != TrajectoryPlain_frag;
+  const bool labels = fragment == TrajectoryLabel_frag;
+  // Words of four bytes: no padding between them. Many lines have all of them in common.
+  struct Values {
+    float eyeHigh[3], eyeLow[3], viewFromObject[9], clipFromView[16];
+    float now[2], window[2];
+    float color[4], alpha, fading[2], ahead;
+    std::uint32_t label, dithered;
+  } values{};
+  const Eigen::Affine3d& X_VO = drawing.object.X_VO;
+  const Eigen::Vector3d eye = X_VO.linear().inverse() * -X_VO.translation();
+  for (int k = 0; k < 3; ++k) {
+    const auto parts = Split(eye[k]);
+    values.eyeHigh[k] = parts[0];
+    values.eyeLow[k] = parts[1];
+  }
+  Eigen::Map<Eigen::Matrix3f>(values.viewFromObject) = X_VO.linear().cast<float>();
+  Eigen::Map<Eigen::Matrix4f>(values.clipFromView) = drawing.view.ClipFromView().cast<float>();
+  if (timed) {
+    const auto now = Split(line.Time());
+    std::copy(now.begin(), now.end(), values.now);
+    values.window[0] = Length(look.before);
+    values.window[1] = Length(look.after);
+  }
+  if (labels) {
+    const bool parts = drawing.list.Filter().partsOf != 0; // labels are those of its parts
+    values.label = parts ? 0 : drawing.object.object->id;
+  } else {
+    for (int k = 0; k < 3; ++k) {
+      values.color[k] = float(look.color[std::size_t(k)]); // sRGB: made linear where it is set
+    }
+    values.color[3] = float(look.opacity);
+    values.alpha = drawing.light ? 0.0f : 1.0f;
+    if (timed) {
+      const auto lengths = line.FadeLengths();
+      // A side without length fades at once: nothing of it is in the window but its end.
+      for (int k = 0; k < 2; ++k) {
+        values.fading[k] = look.fade ? std::max(Length(lengths[std::size_t(k)]), 1e-30f) : 0.0f;
+      }
+      values.ahead = float(look.ahead);
+      values.dithered = translucent ? 0 : 1;
+    }
+  }
+  if (drawing.shaders.HasUniforms(program, &values, sizeof(values))) {
+    return;
+  }
+  program->SetUniform3f("eyeHigh", values.eyeHigh);
+  program->SetUniform3f("eyeLow", values.eyeLow);
+  program->SetUniformMatrix3x3("viewFromObject", values.viewFromObject);
+  program->SetUniformMatrix4x4("clipFromView", values.clipFromView);
+  if (timed) {
+    program->SetUniform2f("now", values.now);
+    program->SetUniform2f("window", values.window);
+  }
+  if (labels) {
+    program->SetUniformi("label", int(values.label));
+    return;
+  }
+  const std::array<float, 3> color = LinearColor(look.color);
+  const float light[4] = {color[0], color[1], color[2], values.color[3]};
+  program->SetUniform4f("look", light);
+  program->SetUniformf("alpha", values.alpha);
+  if (timed) {
+    program->SetUniform2f("fading", values.fading);
+    program->SetUniformf("ahead", values.ahead);
+    program->SetUniformi("dithered", int(values.dithered));
+  }
+}
+
 void TrajectoryDrawer::Draw(const CustomDrawing& drawing, const char* fragment, bool translucent) {
   const auto line = this->Line_.lock();
   if (!line || !this->Whole_.array) {
@@ -193,47 +266,7 @@ void TrajectoryDrawer::Draw(const CustomDrawing& drawing, const char* fragment, 
   }
   const TrajectoryLook& look = line->Look();
   vtkShaderProgram* program = drawing.shaders.Program(TrajectoryLine_vert, fragment);
-  const Eigen::Affine3d& X_VO = drawing.object.X_VO;
-  const Eigen::Vector3d eye = X_VO.linear().inverse() * -X_VO.translation();
-  float high[3];
-  float low[3];
-  for (int k = 0; k < 3; ++k) {
-    const auto parts = Split(eye[k]);
-    high[k] = parts[0];
-    low[k] = parts[1];
-  }
-  program->SetUniform3f("eyeHigh", high);
-  program->SetUniform3f("eyeLow", low);
-  const Eigen::Matrix3f viewFromObject = X_VO.linear().cast<float>();
-  const Eigen::Matrix4f clip = drawing.view.ClipFromView().cast<float>();
-  program->SetUniformMatrix3x3("viewFromObject", const_cast<float*>(viewFromObject.data()));
-  program->SetUniformMatrix4x4("clipFromView", const_cast<float*>(clip.data()));
-  const bool timed = fragment != TrajectoryPlain_frag;
-  const bool labels = fragment == TrajectoryLabel_frag;
-  if (timed) {
-    const auto now = Split(line->Time());
-    const float window[2] = {Length(look.before), Length(look.after)};
-    program->SetUniform2f("now", now.data());
-    program->SetUniform2f("window", window);
-  }
-  if (labels) {
-    const bool parts = drawing.list.Filter().partsOf != 0; // labels are those of its parts
-    program->SetUniformi("label", parts ? 0 : int(drawing.object.object->id));
-  } else {
-    const std::array<float, 3> color = LinearColor(look.color);
-    const float light[4] = {color[0], color[1], color[2], float(look.opacity)};
-    program->SetUniform4f("look", light);
-    program->SetUniformf("alpha", drawing.light ? 0.0f : 1.0f);
-    if (timed) {
-      const auto lengths = line->FadeLengths();
-      // A side without length fades at once: nothing of it is in the window but its end.
-      const float fading[2] = {look.fade ? std::max(Length(lengths[0]), 1e-30f) : 0.0f,
-                               look.fade ? std::max(Length(lengths[1]), 1e-30f) : 0.0f};
-      program->SetUniform2f("fading", fading);
-      program->SetUniformf("ahead", float(look.ahead));
-      program->SetUniformi("dithered", translucent ? 0 : 1);
-    }
-  }
+  this->SetUniforms(drawing, *line, program, fragment, translucent);
   vtkOpenGLState* state = drawing.window->GetState();
   if (translucent) {
     state->vtkglEnable(GL_BLEND);

@@ -9,6 +9,8 @@
 #include <dspace/render/CustomDrawer.h>
 #include <dspace/scene/trajectories/TrajectoryLine.h>
 
+class vtkShaderProgram;
+
 namespace dspace {
 
 class CustomDrawers;
@@ -42,6 +44,8 @@ private:
   };
   void Upload(Buffer& buffer, const std::vector<TrajectoryLine::Strip>& strips, bool dynamic);
   void Draw(const CustomDrawing& drawing, const char* fragment, bool translucent);
+  static void SetUniforms(const CustomDrawing& drawing, const TrajectoryLine& line,
+                          vtkShaderProgram* program, const char* fragment, bool translucent);
   void DrawLines(const TrajectoryLine& line) const;
 
   std::weak_ptr<const TrajectoryLine> Line_; // the scene has it while it is drawn
