@@ -20,7 +20,7 @@ OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, meas
                 terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.pole, terrain.valles_marineris, terrain.two_views, terrain.earth,
                 application.application_terrain, application.application_terrain_dock, application.application_measure,
-                trajectories.artemis_inertial, trajectories.artemis_rotating, sky.constellations, sky.body_descent,
+                trajectories.artemis_inertial, trajectories.artemis_rotating, sky.constellations, sky.planets, sky.body_descent,
                 sky.artemis_photo)
 
 

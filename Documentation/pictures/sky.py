@@ -5,6 +5,7 @@ import numpy as np
 
 import dspace
 from dspace._core.png import png
+from dspace.command_line import main
 from dspace.frames.poses import quaternion_of_matrix
 from pictures.paths import DATA, IMAGES
 
@@ -39,6 +40,12 @@ def constellations():
         target = (math.cos(dec) * math.cos(ra), math.cos(dec) * math.sin(ra), math.sin(dec))
         camera = scene.add_camera(eye=(0, 0, 0), target=target, fov_deg=48)
         scene.add_viewport((960, 540), camera, samples=2).save(IMAGES / "constellations.png")
+
+
+def planets():
+    """Jupiter, Mars and the waning Moon in Leo over Munich, with the ecliptic's grid, by the command line."""
+    main(["sky", "--time", "2026-11-28T05:00", "--site", "11.6,48.1", "--look-at", "jupiter", "--fov", "36", "--size", "960x540",
+          "--grid", "ecliptic", "--constellations", f"{DATA}/stars/constellations_lines.json", "--out", str(IMAGES / "planets.png")])
 
 
 def body_descent():

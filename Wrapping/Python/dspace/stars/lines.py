@@ -9,7 +9,7 @@ from dspace.stars.constellation_names import NAMES
 
 RADIUS = 1e17  # [m]: a step of one astronomical unit moves the lines by 0.3 arcsec
 OBLIQUITY = np.radians(84381.448 / 3600.0)  # of the ecliptic of J2000 (IAU 1976), as ECLIPJ2000 has it
-GRID_COLORS = {"equatorial": (0.25, 0.35, 0.6), "ecliptic": (0.55, 0.45, 0.2), "horizon": (0.25, 0.5, 0.35)}
+GRID_COLORS = {"equatorial": (0.25, 0.35, 0.6), "ecliptic": (0.4, 0.33, 0.16), "horizon": (0.25, 0.5, 0.35)}
 GRIDS = tuple(GRID_COLORS)
 _STEP = np.radians(2.0)  # of the pieces of curves
 
