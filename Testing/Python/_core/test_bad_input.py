@@ -162,7 +162,7 @@ def test_numbers_and_words(scene, view, refused):
              lambda: scene.add_camera("c", fov_deg="wide")),
             ("camera 'camera': the eye is (1, 2); accepted: 3 numbers",
              lambda: scene.cameras["camera"].look_at((1, 2), (0, 0, 0))),
-            ("scene 'scene': time_s is 'now'", lambda: setattr(scene, "time", "now")),
+            ("time 'now': its year is not 4 digits", lambda: setattr(scene, "time", "now")),
             ("name is 5; accepted: a str", lambda: scene.add_frame(5)),
             ("name is 5; accepted: a str", lambda: scene.add_sphere(1, name=5)),
             ("name is '\\ud800'; accepted: a str", lambda: scene.add_frame("\ud800")),
