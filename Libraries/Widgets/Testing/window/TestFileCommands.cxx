@@ -204,6 +204,26 @@ TEST_F(FileCommandsTest, ALayerIsOpenedInTheOtherThread) {
   EXPECT_FALSE(readLayer()->layer);
 }
 
+// The rule is written in both languages: Python asks for each command, without parsing it.
+TEST_F(FileCommandsTest, BothLanguagesNameTheSameCommands) {
+  std::string names;
+  const auto* fields = v1::Command::descriptor()->FindOneofByName("command");
+  for (int i = 0; i < fields->field_count(); ++i) {
+    v1::Command command;
+    command.GetReflection()->MutableMessage(&command, fields->field(i));
+    if (session::ReadsFiles(command)) {
+      names += (names.empty() ? "'" : ", '") + fields->field(i)->name() + "'";
+    }
+  }
+  ASSERT_TRUE(
+      Run("from dspace.application.files import READING\nfrom dspace.proto import commands_pb2"));
+  EXPECT_EQ(
+      Value("[f.name for f in commands_pb2.Command.DESCRIPTOR.oneofs_by_name['command'].fields "
+            "if f.name in READING]"),
+      "[" + names + "]");
+  EXPECT_EQ(Value("len(READING)"), std::to_string(std::count(names.begin(), names.end(), ',') + 1));
+}
+
 TEST_F(FileCommandsTest, AFileThatHangsIsCancelled) {
   const QString path = folder->filePath("hangs.glb");
   ASSERT_EQ(mkfifo(path.toUtf8().constData(), 0600), 0);
