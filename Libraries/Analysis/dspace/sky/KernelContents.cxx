@@ -9,7 +9,6 @@
 #include <dspace/kernels/KernelPool.h>
 #include <dspace/kernels/LeapSecondKernel.h>
 #include <dspace/time/DayText.h>
-#include <dspace/time/Days.h>
 
 namespace dspace {
 namespace {

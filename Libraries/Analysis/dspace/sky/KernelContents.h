@@ -13,10 +13,9 @@ namespace dspace {
 
 struct KernelContent {
   std::string file;
-  std::string kind;  // TextKernel::Kind, or "EOP"
-  int variables = 0; // number of variables that it assigns
-  std::vector<std::string>
-      items; // "radii of SUN, MERCURY, ...", "leap seconds up to 2017-01-01 ..."
+  std::string kind;               // TextKernel::Kind, or "EOP"
+  int variables = 0;              // number of variables that it assigns
+  std::vector<std::string> items; // in words: "radii of SUN, MERCURY, ..."
 };
 
 // `names`: what the bodies of its variables are called.

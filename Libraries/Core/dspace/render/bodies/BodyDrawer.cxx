@@ -64,10 +64,12 @@ double ReachOf(const BodyView& body, const CustomDrawing& drawing, double bright
   constexpr double LeastLight = 1.0 / 16384.0;
   constexpr double MostReach = 256.0;
   constexpr double SunAtMercury = 11.0; // against that at 1 au
-  const double light = drawing.light ? 1e3
-                                     : SunAtMercury * brightness * drawing.view.look.exposure *
-                                           body.radius * body.radius / variance / LeastLight;
-  return std::min(std::sqrt(2.0 * variance * std::log(std::max(light, 2.0))) + 1.0, MostReach);
+  // What is exposed later keeps at least a thousandth of the brightest sample.
+  const double exposure = drawing.light ? 1.0 : drawing.view.look.exposure;
+  const double least = drawing.light ? 1e3 : 2.0;
+  const double light = SunAtMercury * brightness * exposure * body.radius * body.radius / variance;
+  return std::min(std::sqrt(2.0 * variance * std::log(std::max(light / LeastLight, least))) + 1.0,
+                  MostReach);
 }
 
 void SetMatrix(vtkShaderProgram* program, const char* name, const Eigen::Matrix3d& matrix) {
