@@ -91,7 +91,13 @@ vec4 photometricAngles(vec3 N, vec3 positionVC, int parallel)
   vec3 V = parallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
   float lit = 1.0;
 #ifdef DSPACE_SHADOWED
-  lit = sunLit(positionVC, cross(dFdx(positionVC), dFdy(positionVC)));
+  vec3 planeVC = cross(dFdx(positionVC), dFdy(positionVC));
+  lit = sunLit(positionVC, planeVC);
+#ifdef DSPACE_HORIZON
+  // A triangle that turns away from the Sun is dark, as rays have it, although a corner sees the Sun. Pictures
+  // leave that to the smooth normal: the triangles would be seen.
+  lit = min(lit, discLit(dot(normalize(planeVC), towardsSunVC)));
+#endif
 #endif
 #ifdef DSPACE_ECLIPSES
   lit *= sunSeen(DSPACE_ECLIPSE_PLACE);

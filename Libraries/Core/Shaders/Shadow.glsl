@@ -203,7 +203,8 @@ float cascadesLit(vec3 positionVC, vec3 planeVC)
 uniform sampler2D litMask; // SunMask.frag
 #endif
 #ifdef DSPACE_HORIZON
-float horizonLit(); // of the terrain's own page, ClipmapHorizon.frag
+float discLit(float above); // of the terrain's own page, ClipmapHorizon.frag
+float horizonLit();
 #endif
 #ifdef DSPACE_SHADOWED
 uniform int litColors; // 1: the lit fraction in false colours, in place of light

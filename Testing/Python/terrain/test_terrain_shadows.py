@@ -52,9 +52,9 @@ def seen_from(scene, eye, target, size=(96, 72)):
     return view
 
 
-# The light of a post is exact, and that of pixels between posts interpolated: an edge may lie up to two posts from where
-# rays say. A picture of ground whose posts are as wide as its pixels has that many wrong pixels along edges: `wrong` is
-# what was measured. Away from edges fewer than 0.5 % of the pixels are wrong.
+# The light of a post is exact, and that of pixels between posts interpolated, unless their triangle turns away from the Sun:
+# an edge may lie up to two posts from where rays say. A picture of ground whose posts are as wide as its pixels has that many
+# wrong pixels along edges: `wrong` is what was measured. Away from edges fewer than 0.5 % of the pixels are wrong.
 @pytest.mark.parametrize("azimuth, elevation, wrong", [(100, 4, 0.03), (230, 10, 0.025), (35, 25, 0.015)])
 def test_a_crater(scene, tmp_path, azimuth, elevation, wrong):
     terrain = scene.add_terrain(write_raster(tmp_path / "crater.tif", crater(), 0.5), mode="clipmap", level_size=252,
@@ -73,10 +73,10 @@ def test_the_shipped_field(scene, azimuth, elevation):
     scene.sun.set(azimuth_deg=azimuth, elevation_deg=elevation, terrain=terrain)
     x, y = 20.0, -30.0
     ground = terrain.height(x, y)
-    eye, target = np.array((x, y - 4.0, ground + 20.0)), (x, y, ground)
+    eye, target = np.array((x, y - 2.0, ground + 10.0)), (x, y, ground)
     outcome = compare(seen_from(scene, eye, target), terrain, eye, target, 0.2, lift=3e-4)
-    assert outcome.pixels > 1500 and outcome.shaded > 0.02 and outcome.lit > 0.3
-    assert outcome.wrong < 0.10
+    assert outcome.pixels > 1500 and outcome.shaded > 0.01 and outcome.lit > 0.3
+    assert outcome.wrong < 0.02
     assert outcome.wrong_away < 0.005 and outcome.away < 0.01
 
 
@@ -86,24 +86,24 @@ def test_the_apollo_15_site(scene, azimuth):
                                 pixel_size=2.0, vertical_scale=49 / 255, vertical_offset=0.0, vertical_datum="relative")
     scene.sun.set(azimuth_deg=azimuth, elevation_deg=4, terrain=terrain)
     ground = terrain.height(0.0, 0.0)
-    eye, target = np.array((0.0, -11.0, ground + 220.0)), (0.0, 0.0, ground)
+    eye, target = np.array((0.0, -4.0, ground + 90.0)), (0.0, 0.0, ground)  # higher, coarser posts would be mixed in
     outcome = compare(seen_from(scene, eye, target), terrain, eye, target, 2.0)
     assert outcome.pixels > 1500 and outcome.shaded > 0.1 and outcome.lit > 0.2
-    assert outcome.wrong < 0.15  # heights of 49 m in 256 steps: half of all pixels are near an edge
+    assert outcome.wrong < 0.045  # heights of 49 m in 256 steps: half of all pixels are near an edge
     assert outcome.wrong_away < 0.005 and outcome.away < 0.01
 
 
-@pytest.mark.parametrize("place, shaded", [((137.4, -4.0), 0.05), ((138.3, -5.3), 0.2)], ids=["rim", "mount"])
-def test_gale(scene, place, shaded):
+@pytest.mark.parametrize("place", [(137.4, -4.0), (138.3, -5.3)], ids=["rim", "mount"])
+def test_gale(scene, place):
     terrain = scene.add_terrain(real("mars_gale_mola_128ppd_m.tif"), mode="clipmap", level_size=252, color=WHITE,
                                 vertical_datum="areoid")
     scene.sun.set(azimuth_deg=85, elevation_deg=6, terrain=terrain)
     x, y, _ = terrain.from_map([[*place, 0.0]])[0]
     ground = terrain.height(x, y)
-    eye, target = np.array((x, y - 3e3, ground + 60e3)), (x, y, ground)
+    eye, target = np.array((x, y - 1e3, ground + 24e3)), (x, y, ground)
     outcome = compare(seen_from(scene, eye, target), terrain, eye, target, 463.0, lift=0.05)
-    assert outcome.pixels > 1500 and outcome.shaded > shaded and outcome.lit > 0.3
-    assert outcome.wrong < 0.05
+    assert outcome.pixels > 1500 and outcome.shaded > 0.05 and outcome.lit > 0.3
+    assert outcome.wrong < 0.015
     assert outcome.wrong_away < 0.005 and outcome.away < 0.01
 
 
