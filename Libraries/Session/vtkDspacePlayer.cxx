@@ -1,9 +1,17 @@
 #include "vtkDspacePlayer.h"
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <future>
+#include <memory>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/HomeProcess.h>
+#include <dspace/commands/beforehand/FilesAhead.h>
 #include <dspace/link/watching/ViewerViews.h>
 #include <dspace/link/watching/ViewportCopies.h>
 #include <dspace/messages/ErrorReply.h>
@@ -15,12 +23,44 @@
 
 vtkStandardNewMacro(vtkDspacePlayer);
 
+namespace {
+
+// A recording that another thread reads; it keeps what it uses.
+struct Opening {
+  std::string path;
+  bool check = true;
+  std::atomic<bool> cancelled{false};
+  std::unique_ptr<dspace::session::RecordingReader> reader;
+  dspace::session::PlaybackSources sources; // goes before the reader
+  dspace::v1::Reply failed;                 // where it has an error
+  std::promise<void> done;
+  std::future<void> isDone = done.get_future();
+
+  void Read() {
+    this->failed = dspace::session::Catch([this] {
+      this->reader = std::make_unique<dspace::session::RecordingReader>(this->path);
+      this->sources = dspace::session::PlaybackSources::Read(*this->reader, this->check, [this] {
+        if (this->cancelled) {
+          throw dspace::Error(dspace::Error::Kind::Resource, "recording '" + this->path + "'",
+                              "opening it was cancelled");
+        }
+      });
+      return dspace::v1::Reply();
+    });
+    this->done.set_value();
+  }
+};
+
+} // namespace
+
 struct vtkDspacePlayer::Internals {
   dspace::HomeProcess home;
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
   dspace::session::ViewerViews views;
   dspace::session::ViewportCopies copies;
-  std::optional<dspace::session::RecordingReader> reader;
+  std::shared_ptr<Opening> opening; // null: nothing is being opened
+  dspace::v1::Reply opened;
+  std::unique_ptr<dspace::session::RecordingReader> reader;
   std::optional<dspace::session::Playback> playback; // goes before the reader
 
   dspace::session::Interpreter& Interpreter() { return this->session->GetInterpreter(); }
@@ -42,6 +82,26 @@ struct vtkDspacePlayer::Internals {
     return reply;
   }
 
+  std::optional<dspace::session::CommandAhead> ReadAhead(const dspace::v1::Command& command,
+                                                         const dspace::FilesGuard::Check& look) {
+    using dspace::session::FilesAhead;
+    const std::shared_ptr<FilesAhead> files =
+        FilesAhead::Begin(this->Interpreter().GetState(), command, look);
+    if (!files) {
+      return {};
+    }
+    const auto execute = [this, files] {
+      if (files->Failed().has_error()) {
+        return files->Failed();
+      }
+      const dspace::session::ReadBeforehand::Scope scope(files->Files());
+      dspace::v1::Command read = files->ToExecute(this->Interpreter().GetState());
+      return this->Interpreter().Execute(read);
+    };
+    return dspace::session::CommandAhead{[files](double seconds) { return files->IsRead(seconds); },
+                                         execute};
+  }
+
   dspace::session::PlaybackGuests Guests() {
     dspace::session::PlaybackGuests guests;
     guests.beforeSnapshot = [this] { this->views.BeforeSnapshot(this->Interpreter()); };
@@ -50,6 +110,10 @@ struct vtkDspacePlayer::Internals {
     guests.arrived = [this] { this->views.Resume(this->Interpreter(), true); };
     guests.makeRoom = [this](const dspace::v1::Command& command) {
       return this->views.RemoveConflicting(this->Interpreter(), command);
+    };
+    guests.readAhead = [this](const dspace::v1::Command& command,
+                              const dspace::FilesGuard::Check& look) {
+      return this->ReadAhead(command, look);
     };
     return guests;
   }
@@ -74,18 +138,58 @@ void vtkDspacePlayer::ShareRenderContext(vtkDspaceSession* other) {
 }
 
 std::string vtkDspacePlayer::Open(const std::string& path, bool check) {
-  this->Close();
-  const dspace::v1::Reply reply = dspace::session::Catch([&] {
-    this->Impl->copies.Follow(this->Impl->Interpreter());
-    this->Impl->reader.emplace(path);
-    this->Impl->playback.emplace(*this->Impl->reader, this->Impl->Interpreter(), check);
-    this->Impl->playback->SetGuests(this->Impl->Guests());
-    return this->Impl->WithNotes();
-  });
-  if (reply.has_error()) {
-    this->Close();
+  constexpr double Long = 3600.0; // [s]
+  this->BeginOpen(path, check);
+  while (this->WaitForOpen(Long) == 0) {
   }
-  return reply.SerializeAsString();
+  return this->TakeReply();
+}
+
+void vtkDspacePlayer::BeginOpen(const std::string& path, bool check) {
+  this->Close();
+  this->Impl->opening = std::make_shared<Opening>();
+  this->Impl->opening->path = path;
+  this->Impl->opening->check = check;
+  std::thread([opening = this->Impl->opening] { opening->Read(); }).detach();
+}
+
+int vtkDspacePlayer::WaitForOpen(double seconds) {
+  Internals& impl = *this->Impl;
+  if (!impl.opening) {
+    return impl.playback ? 1 : -1;
+  }
+  if (!impl.playback && impl.opening->isDone.wait_for(std::chrono::duration<double>(seconds)) !=
+                            std::future_status::ready) {
+    return 0;
+  }
+  bool there = false;
+  impl.opened = impl.opening->failed;
+  if (!impl.opened.has_error()) {
+    impl.opened = dspace::session::Catch([&] {
+      if (!impl.playback) {
+        impl.copies.Follow(impl.Interpreter());
+        impl.reader = std::move(impl.opening->reader);
+        impl.playback.emplace(*impl.reader, impl.Interpreter(), std::move(impl.opening->sources),
+                              impl.Guests());
+      }
+      there = impl.playback->Continue(seconds);
+      return there ? impl.WithNotes() : dspace::v1::Reply();
+    });
+  }
+  if (impl.opened.has_error()) {
+    const dspace::v1::Reply failed = impl.opened;
+    this->Close();
+    impl.opened = failed;
+    return -1;
+  }
+  if (there) {
+    impl.opening.reset();
+  }
+  return there ? 1 : 0;
+}
+
+std::string vtkDspacePlayer::TakeReply() {
+  return std::exchange(this->Impl->opened, {}).SerializeAsString();
 }
 
 vtkDspaceSession* vtkDspacePlayer::GetSession() {
@@ -163,6 +267,11 @@ std::string vtkDspacePlayer::GetFolder() {
 }
 
 void vtkDspacePlayer::Close() {
+  if (this->Impl->opening) {
+    this->Impl->opening->cancelled = true;
+    this->Impl->opening.reset();
+  }
+  this->Impl->opened.Clear();
   this->Impl->playback.reset();
   this->Impl->reader.reset();
 }
@@ -172,5 +281,5 @@ dspace::session::Playback* vtkDspacePlayer::GetPlayback() {
 }
 
 dspace::session::RecordingReader* vtkDspacePlayer::GetReader() {
-  return this->Impl->reader ? &*this->Impl->reader : nullptr;
+  return this->Impl->reader.get();
 }

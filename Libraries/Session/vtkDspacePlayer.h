@@ -34,6 +34,12 @@ public:
   void ShareRenderContext(vtkDspaceSession* other);
   /// Goes to the first step. `check`: files that are not packed must be unchanged.
   std::string Open(const std::string& path, bool check);
+  /// The same without holding the thread: another one reads the recording, its files, and those of
+  /// its commands. WaitForOpen waits up to this time [s], or executes commands for it: 0: not yet,
+  /// 1: it is open, -1: it failed. TakeReply then returns the reply. Close cancels it.
+  void BeginOpen(const std::string& path, bool check);
+  int WaitForOpen(double seconds);
+  std::string TakeReply();
   /// Its session; the same one from the beginning to the end.
   vtkDspaceSession* GetSession();
   /// Executes a serialized Command.
@@ -42,7 +48,7 @@ public:
   /// its camera, look, tables and colour bars. NOT_FOUND: the present step has no such viewport.
   std::string CopyViewport(const std::string& viewport, const std::string& as);
 
-  /// Moves to a step, from 0, and waits for it.
+  /// Moves to a step, from 0, and waits for it, also for the files that another thread reads.
   std::string Go(long long index);
   /// The present step, and its time [s].
   long long GetIndex();

@@ -20,13 +20,16 @@ class Host:
     def __init__(self):
         self.made = vtk.vtkDspaceSession()
         self.shown, self.messages, self.timers, self.asked, self.tasks = [], [], {}, [], {}
-        self.extended, self.activated = [], None
+        self.extended, self.activated, self.breaths = [], None, 0
 
     def session(self):
         return self.made
 
     def execute(self, command):
         return self.made.Execute(command)
+
+    def breathe(self):
+        self.breaths += 1
 
     def show(self, shown, name, title):
         session = shown.GetSession() if hasattr(shown, "GetSession") else shown

@@ -20,13 +20,27 @@ std::string Seconds(double time_s) {
 
 } // namespace
 
-Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles)
-    : Reader_(reader), Interpreter_(interpreter), Steps_(StepsOf(reader)),
-      Files_(reader, checkFiles) {
-  if (this->Steps_.steps.empty()) {
+PlaybackSources PlaybackSources::Read(RecordingReader& reader, bool checkFiles,
+                                      CancelCheck checkCancel) {
+  PlaybackSources sources;
+  sources.steps = StepsOf(reader);
+  if (sources.steps.steps.empty()) {
     RejectNoSteps(reader);
   }
+  sources.files = std::make_unique<RecordedFiles>(reader, checkFiles, std::move(checkCancel));
+  return sources;
+}
+
+Playback::Playback(RecordingReader& reader, Interpreter& interpreter, PlaybackSources sources,
+                   PlaybackGuests guests)
+    : Reader_(reader), Interpreter_(interpreter), Steps_(std::move(sources.steps)),
+      Files_(std::move(sources.files)), Guests_(std::move(guests)) {
   this->SetSteps();
+  this->Aim(0);
+}
+
+Playback::Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles)
+    : Playback(reader, interpreter, PlaybackSources::Read(reader, checkFiles), {}) {
   this->MoveTo(0);
 }
 
@@ -75,7 +89,7 @@ std::size_t Playback::Update() {
   const std::size_t before = this->Steps_.steps.size();
   this->Steps_ = StepsOf(this->Reader_);
   this->SetSteps();
-  this->Files_.Update();
+  this->Files_->Update();
   return this->Steps_.steps.size() - before;
 }
 
@@ -126,6 +140,7 @@ bool Playback::Continue(double seconds) {
   } catch (...) {
     this->Aim_.reset();
     this->Base_.reset();
+    this->Ahead_.reset();
     throw;
   }
   this->Index_ = index;
@@ -149,7 +164,9 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
     const std::vector<v1::Command>& commands = this->Base_->commands;
     this->NoteForeign(this->Base_->foreignText, "snapshot ", this->Base_->seq);
     while (this->BaseDone_ < commands.size()) {
-      this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq);
+      if (!this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq, seconds)) {
+        return false;
+      }
       ++this->BaseDone_;
       if (late() && this->BaseDone_ < commands.size()) {
         return false;
@@ -168,7 +185,10 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
     this->At_.reset(); // unknown, if one of these fails
     this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
       this->NoteForeign(row.foreignText, "command ", row.seq);
-      this->Execute(std::move(row.command), "command ", row.seq);
+      if (!this->Execute(std::move(row.command), "command ", row.seq, seconds)) {
+        stopped = true;
+        return false;
+      }
       at = row.seq;
       this->Reached_s_ = row.time_s;
       stopped = late();
@@ -181,7 +201,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
                 "no commands lead to command " + std::to_string(target) +
                     ", at which a step ends; they end at " + std::to_string(at));
   }
-  return at == target;
+  return at == target && this->HasOverviews(seconds);
 }
 
 // Steps are found by an index that has no checksums; the rows that it leads to have.
@@ -208,6 +228,7 @@ void Playback::CheckStep(std::size_t index, std::optional<double> reached_s) {
 void Playback::Begin(std::uint64_t target) {
   RecordedSnapshot snapshot = this->Reader_.SnapshotAt(target);
   this->At_.reset();
+  this->Building_.reset();
   if (this->Guests_.beforeSnapshot) {
     this->Guests_.beforeSnapshot();
   }
@@ -221,32 +242,39 @@ void Playback::Begin(std::uint64_t target) {
   for (const std::string& name : viewports) {
     v1::Command command;
     command.mutable_remove_viewport()->set_viewport(name);
-    this->Execute(std::move(command), "before snapshot ", snapshot.seq);
+    this->Execute(std::move(command), "before snapshot ", snapshot.seq, 0.0);
   }
   for (const std::string& name : scenes) {
     v1::Command command;
     command.set_scene(name);
     command.mutable_remove_scene();
-    this->Execute(std::move(command), "before snapshot ", snapshot.seq);
+    this->Execute(std::move(command), "before snapshot ", snapshot.seq, 0.0);
   }
   this->Base_ = std::move(snapshot);
   this->BaseDone_ = 0;
 }
 
-void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq) {
+bool Playback::Execute(v1::Command command, const char* table, std::uint64_t seq, double seconds) {
+  if (!this->HasOverviews(seconds)) {
+    return false;
+  }
   const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
-  const FilesGuard guard(this->Files_.Look());
+  const FilesGuard guard(this->Files_->Look());
   std::string rejected;
   if (entry && entry->effect != Effect::Change) {
     rejected =
         "command " + CommandName(command) + ": it changes nothing; recordings contain only changes";
   } else {
-    this->Files_.Map(command);
-    this->Files_.FillIn(command);
+    this->Files_->Map(command);
+    this->Files_->FillIn(command);
+    if (!this->IsReady(command, table + std::to_string(seq), seconds)) {
+      return false;
+    }
     if (command.has_remove_scene() && this->Guests_.makeRoom) {
       this->Guests_.makeRoom(command);
     }
-    rejected = this->Interpreter_.Execute(command).error().message();
+    const std::optional<CommandAhead> ahead = std::exchange(this->Ahead_, std::nullopt);
+    rejected = (ahead ? ahead->execute() : this->Interpreter_.Execute(command)).error().message();
     if (!rejected.empty() && this->Guests_.makeRoom && this->Guests_.makeRoom(command)) {
       rejected = this->Interpreter_.Execute(command).error().message();
     }
@@ -255,9 +283,26 @@ void Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
     throw Error(Error::Kind::Corrupt, RecordingName(this->Reader_.Path()),
                 table + std::to_string(seq) + " is rejected: " + rejected);
   }
-  if (command.has_open_terrain() && !this->Files_.Folder().empty()) {
-    this->WaitForOverviews(command);
+  if (command.has_open_terrain() && !this->Files_->Folder().empty()) {
+    this->Building_.emplace();
+    this->Building_->set_scene(command.scene());
+    this->Building_->mutable_describe_terrain()->set_terrain(command.open_terrain().name());
   }
+  return true;
+}
+
+// Whether its files are read, as far as another thread reads them.
+bool Playback::IsReady(const v1::Command& command, const std::string& row, double seconds) {
+  if (!this->Guests_.readAhead) {
+    return true;
+  }
+  // A row of a snapshot has many commands, which come one after the other.
+  const std::string place = row + " " + std::to_string(this->Base_ ? this->BaseDone_ : 0);
+  if (!this->Ahead_ || this->AheadOf_ != place) {
+    this->Ahead_ = this->Guests_.readAhead(command, this->Files_->Look());
+    this->AheadOf_ = place;
+  }
+  return !this->Ahead_ || this->Ahead_->isRead(seconds);
 }
 
 // Each row once, however often it is executed.
@@ -275,13 +320,19 @@ std::vector<std::string> Playback::TakeNotes() {
 }
 
 // Large rasters were drawn from their overviews, which are rebuilt beside the unpacked file.
-void Playback::WaitForOverviews(const v1::Command& opened) {
-  v1::Command ask;
-  ask.set_scene(opened.scene());
-  ask.mutable_describe_terrain()->set_terrain(opened.open_terrain().name());
-  while (this->Interpreter_.Execute(ask).terrain().overview_build() == v1::TerrainReply::BUILDING) {
+bool Playback::HasOverviews(double seconds) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point began = Clock::now();
+  while (this->Building_ &&
+         this->Interpreter_.Execute(*this->Building_).terrain().overview_build() ==
+             v1::TerrainReply::BUILDING) {
+    if (std::chrono::duration<double>(Clock::now() - began).count() >= seconds) {
+      return false;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  this->Building_.reset();
+  return true;
 }
 
 } // namespace dspace::session

@@ -20,6 +20,11 @@ std::string FileKey(const std::string& path) {
          std::to_string(error ? 0 : time.time_since_epoch().count());
 }
 
+std::string ModelKey(const std::string& path, const ImportOptions& options) {
+  return FileKey(path) + "\n" + std::to_string(options.strict) + "\n" +
+         std::to_string(options.maximumTriangles) + "\n" + std::to_string(options.pointCloud);
+}
+
 } // namespace
 
 template<class T, class Read>
@@ -43,15 +48,17 @@ std::shared_ptr<const T> ModelCache::Load(std::map<std::string, Kept<T>>& cache,
 
 std::shared_ptr<const Model> ModelCache::LoadModel(const std::string& path,
                                                    const ImportOptions& options) {
-  const std::string key = FileKey(path) + "\n" + std::to_string(options.strict) + "\n" +
-                          std::to_string(options.maximumTriangles) + "\n" +
-                          std::to_string(options.pointCloud);
-  return Load(this->Models_, key, [&] {
+  return Load(this->Models_, ModelKey(path, options), [&] {
     ReadBeforehand* before = ReadBeforehand::Current();
     return before && &before->models != this
                ? before->models.LoadModel(path, options)
                : std::make_shared<const Model>(ImportModel(path, options));
   });
+}
+
+bool ModelCache::Has(const std::string& path, const ImportOptions& options) const {
+  const auto found = this->Models_.find(ModelKey(path, options));
+  return found != this->Models_.end() && !found->second.value.expired();
 }
 
 std::shared_ptr<const Image> ModelCache::LoadImage(const std::string& path) {

@@ -19,6 +19,8 @@ class ModelCache {
 public:
   std::shared_ptr<const Model> LoadModel(const std::string& path, const ImportOptions& options);
   std::shared_ptr<const Image> LoadImage(const std::string& path);
+  // Whether LoadModel would read nothing.
+  bool Has(const std::string& path, const ImportOptions& options) const;
 
 private:
   template<class T> struct Kept {

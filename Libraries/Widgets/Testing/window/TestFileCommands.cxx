@@ -56,7 +56,26 @@ void WriteLargeModel(const QString& path, int side) {
 
 } // namespace
 
-class FileCommandsTest : public WindowFixture {};
+class FileCommandsTest : public WindowFixture {
+protected:
+  // Records, in a process of its own, a scene to which these files are added by a line of Python
+  // each.
+  static bool Record(const QString& path, const QStringList& lines) {
+    QString text = "import dspace, sys\n"
+                   "with dspace.Session() as session, session.record(sys.argv[1]):\n"
+                   "    scene = session.scene('place')\n"
+                   "    camera = scene.add_camera(eye=(5, -40, 30), target=(5, 0, 0))\n"
+                   "    scene.add_viewport((320, 200), camera, name='main')\n";
+    for (const QString& line : lines) {
+      text += "    " + line + '\n';
+    }
+    text += "    scene.time = 1.0\n";
+    return Run("import os, subprocess, sys\n"
+               "assert subprocess.run([sys.executable, '-W', 'ignore', '-c', r\"\"\"" +
+               text + "\"\"\", r'" + path +
+               "'], env={**os.environ, 'PYTHONPATH': sys.path[0]}).returncode == 0");
+  }
+};
 
 TEST_F(FileCommandsTest, TheWindowLivesWhileALargeModelIsRead) {
   const QString path = folder->filePath("large.obj");
@@ -275,6 +294,79 @@ TEST_F(FileCommandsTest, DamagedFilesSayWhyAndChangeNothing) {
   EXPECT_EQ(Value("before == (len(scene.objects), len(scene.terrains), len(app.views))"), "True");
   EXPECT_TRUE(window->Desktop()->Notices()->isVisible());
   EXPECT_NE(window->Desktop()->Notices()->Text().indexOf("damaged.tif"), -1);
+}
+
+TEST_F(FileCommandsTest, TheWindowLivesWhileARecordingIsOpened) {
+  const QString model = folder->filePath("recorded.obj");
+  WriteLargeModel(model, 500);
+  const QString path = folder->filePath("large.dspace");
+  ASSERT_TRUE(Record(path, {"scene.load(r'" + model + "')"})) << errors.toStdString();
+  int ticks = 0;
+  QTimer ticking;
+  QObject::connect(&ticking, &QTimer::timeout, &ticking, [&] {
+    ticks += window->findChild<TaskStrip*>()->Holds("large.dspace") ? 1 : 0;
+  });
+  ticking.start(10);
+  ASSERT_TRUE(Run("run = app.open(r'" + path + "')")) << errors.toStdString();
+  EXPECT_GT(ticks, 3);
+  EXPECT_FALSE(window->findChild<TaskStrip*>()->Holds("large.dspace"));
+  EXPECT_EQ(Value("list(run.session.scenes['place'].objects.values())[0].bounds is not None"),
+            "True");
+  ASSERT_TRUE(Settled());
+  ASSERT_TRUE(Run("run.close()"));
+}
+
+TEST_F(FileCommandsTest, ARecordingThatIsCancelledChangesNothing) {
+  const QString model = folder->filePath("cancelled.obj");
+  WriteLargeModel(model, 500);
+  const QString path = folder->filePath("cancelled.dspace");
+  ASSERT_TRUE(Record(path, {"scene.load(r'" + model + "')"})) << errors.toStdString();
+  ASSERT_TRUE(Run("before = (len(app.runs), len(app.views))"));
+  bool pressed = false;
+  QTimer pressing;
+  QObject::connect(&pressing, &QTimer::timeout, &pressing, [&] {
+    auto* strip = window->findChild<TaskStrip*>();
+    if (!pressed && strip->Holds("cancelled.dspace")) {
+      pressed = true;
+      strip->findChild<QToolButton*>()->click();
+    }
+  });
+  pressing.start(5);
+  EXPECT_FALSE(Run("app.open(r'" + path + "')"));
+  EXPECT_TRUE(pressed);
+  EXPECT_NE(errors.indexOf("cancelled"), -1) << errors.toStdString();
+  EXPECT_EQ(Value("before == (len(app.runs), len(app.views))"), "True");
+  // One whose file has changed since says so.
+  QFile file(model);
+  ASSERT_TRUE(file.open(QIODevice::Append));
+  file.write("# changed\n");
+  file.close();
+  errors.clear();
+  EXPECT_FALSE(Run("app.open(r'" + path + "')"));
+  EXPECT_NE(errors.indexOf("has changed since it was recorded"), -1) << errors.toStdString();
+  EXPECT_EQ(Value("before == (len(app.runs), len(app.views))"), "True");
+}
+
+TEST_F(FileCommandsTest, TheThreadOfTheWindowsOpensNoFileOfARecording) {
+  const QString copies = folder->filePath("recorded");
+  ASSERT_TRUE(QDir().mkpath(copies));
+  for (const char* name : {"rover/arm_turret.glb", "field/field.tif", "field/field_color.tif"}) {
+    ASSERT_EQ(std::system(("cp '" + ShippedData() + "/" + name + "' '" + copies + "'").toUtf8()),
+              0);
+  }
+  const QString path = folder->filePath("files.dspace");
+  ASSERT_TRUE(
+      Record(path, {"scene.load(r'" + copies + "/arm_turret.glb')",
+                    "ground = scene.add_terrain(r'" + copies + "/field.tif', mode='clipmap')",
+                    "ground.add_image(r'" + copies + "/field_color.tif')",
+                    "scene.add_terrain(r'" + copies + "/field.tif', mode='triangles')"}))
+      << errors.toStdString();
+  const OpenedFiles opened;
+  ASSERT_TRUE(window->Open(path)) << errors.toStdString();
+  ASSERT_TRUE(Settled());
+  EXPECT_EQ(Value("len(app.runs[-1].session.scenes['place'].terrains)"), "2");
+  EXPECT_EQ(opened.Below(copies.toStdString()), std::vector<std::string>{});
+  ASSERT_TRUE(Run("app.runs[-1].close()"));
 }
 
 TEST_F(FileCommandsTest, TheThreadOfTheWindowsOpensNoModelAndNoRaster) {

@@ -384,7 +384,7 @@ class App:
         return terrain
 
     def _open_run(self, path):
-        run = Run(path, self._host, self.session.vtk, self._closed)
+        run = Run(path, self)
         try:
             views = run.own_views(self.views)
             if not views and len(run.times) > 1:  # they may come later

@@ -7,9 +7,12 @@ from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
-from dspace.errors import Unsupported
+from dspace.errors import Resource, Unsupported
 from dspace.links.watching import OWN
 from dspace.playback.playback import Playback
+
+PATIENCE = 0.02  # [s] before the windows show what is opened
+SLICE = 0.01  # [s] of work at once
 
 
 def require(reply):
@@ -46,11 +49,11 @@ class Run(Playback):
     "viewer:" stay when it moves; other additions to its session are lost when it moves back. movie: its camera key
     frames, as dspace.application.key_frames.KeyFrames."""
 
-    def __init__(self, path, host, session, closed=None, check_assets=True):
+    def __init__(self, path, app, check_assets=True):
         self.movie = None
-        self._host, self._told_closed = host, closed
+        self._app, self._host = app, app._host
         self._player = _vtk.vtkDspacePlayer()
-        self._player.ShareRenderContext(session)
+        self._player.ShareRenderContext(app.session.vtk)
         self._closed = False
         self._opened = False
         self._path, self._checked = os.path.abspath(os.fspath(path)), flag(check_assets, "check_assets", "recording")
@@ -62,8 +65,27 @@ class Run(Playback):
         if self._opened:
             require(self._player.Update())
         else:
-            require(self._player.Open(os.fsencode(self._path), self._checked))
+            self._open()
             self._opened = True
+
+    def _open(self):
+        player, name = self._player, os.path.basename(self._path)
+        player.BeginOpen(os.fsencode(self._path), self._checked)
+        state = player.WaitForOpen(PATIENCE)
+        if state == 0:
+            task = self._app._add_task(player.Close)
+            self._host.task(task, f"Reading {name}", -1.0, "Cancel")
+            try:
+                while state == 0:
+                    self._host.breathe()
+                    state = player.WaitForOpen(SLICE)
+            finally:
+                self._host.task(task, "", 0.0, "")
+                self._app._tasks.pop(task, None)
+        reply = player.TakeReply()
+        if state < 0 and not to_reply(reply).HasField("error"):
+            raise Resource("opening it was cancelled", self.file.label)
+        require(reply)
 
     def _make_session(self):
         made = Session.__new__(Session)
@@ -138,8 +160,7 @@ class Run(Playback):
         """Closes its views and ends the playback. A second call does nothing."""
         if not self._closed:
             self._closed = True
-            if self._told_closed is not None:
-                self._told_closed(self)
+            self._app._closed(self)
             self._host.forget(self._player)
             super().close()
             self._player.Close()

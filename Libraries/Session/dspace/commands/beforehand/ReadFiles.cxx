@@ -1,5 +1,7 @@
 #include <dspace/commands/beforehand/ReadFiles.h>
 
+#include <algorithm>
+
 #include <dspace/Error.h>
 #include <dspace/commands/terrain/TerrainBeforehand.h>
 #include <dspace/import/worker/ModelImport.h>
@@ -7,10 +9,15 @@
 namespace dspace::session {
 namespace {
 
-void ReadModels(const v1::ImportObject& command, ReadBeforehand& into) {
+ImportOptions OptionsOf(const v1::ImportObject& command) {
   ImportOptions options;
   options.strict = command.strict();
   options.pointCloud = command.point_cloud();
+  return options;
+}
+
+void ReadModels(const v1::ImportObject& command, ReadBeforehand& into) {
+  const ImportOptions options = OptionsOf(command);
   for (const v1::ImportObject::Level& level : command.level()) {
     into.kept.push_back(into.models.LoadModel(AbsolutePath(level.path()), options));
   }
@@ -38,6 +45,17 @@ void ReadVisuals(const std::string& path, const ImportOptions& options, ReadBefo
 bool ReadsFiles(const v1::Command& command) {
   return command.has_import_object() || command.has_import_nodes() || command.has_load_robot() ||
          command.has_open_terrain() || command.has_add_terrain_layer();
+}
+
+bool HasFiles(State& state, const v1::Command& command) {
+  if (!command.has_import_object() && !command.has_import_nodes()) {
+    return false;
+  }
+  const v1::ImportObject& import =
+      command.has_import_object() ? command.import_object() : command.import_nodes().import();
+  return std::all_of(import.level().begin(), import.level().end(), [&](const auto& level) {
+    return state.models.Has(AbsolutePath(level.path()), OptionsOf(import));
+  });
 }
 
 StateBeforehand NameBeforehand(State& state, v1::Command& command) {

@@ -18,6 +18,10 @@ namespace dspace::session {
 // OpenTerrain, AddTerrainLayer.
 bool ReadsFiles(const v1::Command& command);
 
+// Whether the session holds all models of an ImportObject or ImportNodes, so that reading takes no
+// time.
+bool HasFiles(State& state, const v1::Command& command);
+
 // What reading takes from the state.
 struct StateBeforehand {
   std::optional<Eigen::Vector3d> sun_S;       // ReliefSun() of a terrain

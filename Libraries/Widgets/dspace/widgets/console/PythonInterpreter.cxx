@@ -7,6 +7,8 @@
 #include <map>
 #include <stdexcept>
 
+#include <QCoreApplication>
+#include <QEventLoop>
 #include <QFile>
 #include <QTimer>
 
@@ -21,6 +23,8 @@
 
 namespace dspace::widgets {
 namespace {
+
+constexpr int Breath_ms = 10;
 
 class Lock { // of the interpreter, for a call of Python
 public:
@@ -279,6 +283,13 @@ struct PythonInterpreter::Internals {
     }));
     return done ? PyBytes_FromStringAndSize(reply.data(), Py_ssize_t(reply.size())) : nullptr;
   }
+  // breathe(): lets the windows draw and take events.
+  static PyObject* Breathe(PyObject*, PyObject*) {
+    PyThreadState* const state = PyEval_SaveThread(); // events may run Python
+    QCoreApplication::processEvents(QEventLoop::AllEvents, Breath_ms);
+    PyEval_RestoreThread(state);
+    Py_RETURN_NONE;
+  }
   static PyObject* Plot(PyObject*, PyObject* arguments) {
     PyObject* shown = nullptr;
     const char* scene = nullptr;
@@ -393,6 +404,7 @@ struct PythonInterpreter::Internals {
                                     {"active", Active, METH_NOARGS, nullptr},
                                     {"extend", Extend, METH_VARARGS, nullptr},
                                     {"execute", Execute, METH_VARARGS, nullptr},
+                                    {"breathe", Breathe, METH_NOARGS, nullptr},
                                     {"plot", Plot, METH_VARARGS, nullptr},
                                     {"plot_channel", PlotChannel, METH_VARARGS, nullptr},
                                     {"plot_series", PlotSeries, METH_VARARGS, nullptr},

@@ -1,10 +1,5 @@
 #include <dspace/widgets/window/FileCommands.h>
 
-#include <atomic>
-#include <chrono>
-#include <future>
-#include <thread>
-
 #include <QCoreApplication>
 #include <QEventLoop>
 #include <QFileInfo>
@@ -12,14 +7,13 @@
 #include "vtkDspaceSession.h"
 
 #include <dspace/Error.h>
-#include <dspace/commands/beforehand/ReadFiles.h>
-#include <dspace/messages/ErrorReply.h>
+#include <dspace/commands/beforehand/FilesAhead.h>
 #include <dspace/widgets/window/TaskStrip.h>
 
 namespace dspace::widgets {
 namespace {
 
-constexpr auto Patience = std::chrono::milliseconds(20);
+constexpr double Patience = 0.02; // [s]
 constexpr int Slice_ms = 10;
 
 QString FileOf(const v1::Command& command) {
@@ -45,12 +39,8 @@ QString FileOf(const v1::Command& command) {
 } // namespace
 
 struct FileCommands::Job {
-  v1::Command command; // with the names that what is read has
-  std::shared_ptr<session::ReadBeforehand> read;
-  v1::Reply failed; // where it has an error
-  std::promise<void> done;
-  std::future<void> isDone = done.get_future();
-  std::atomic<bool> cancelled{false};
+  std::unique_ptr<session::FilesAhead> files;
+  bool cancelled = false;
 };
 
 FileCommands::FileCommands(vtkDspaceSession* session, TaskStrip* strip, QObject* parent)
@@ -74,27 +64,21 @@ void FileCommands::CancelAll() {
 }
 
 void FileCommands::Read(const std::string& command) {
-  auto job = std::make_shared<Job>();
-  if (!job->command.ParseFromString(command) || !session::ReadsFiles(job->command)) {
+  v1::Command parsed;
+  if (!parsed.ParseFromString(command)) {
     return;
   }
-  const session::StateBeforehand state =
-      session::NameBeforehand(this->Session_->GetInterpreter().GetState(), job->command);
-  std::thread([job, state] { // it keeps what it uses, also when nobody waits any more
-    job->failed = session::Catch([&] {
-      job->read = session::ReadFiles(job->command, state);
-      return v1::Reply();
-    });
-    job->done.set_value();
-  })
-      .detach();
-  if (job->isDone.wait_for(Patience) != std::future_status::ready) {
+  auto job = std::make_shared<Job>();
+  job->files = session::FilesAhead::Begin(this->Session_->GetInterpreter().GetState(), parsed);
+  if (!job->files) {
+    return;
+  }
+  if (!job->files->IsRead(Patience)) {
     const long id = --this->Last_; // Python's tasks have positive numbers
     this->Jobs_[id] = job;
-    const QString file = FileOf(job->command);
+    const QString file = FileOf(parsed);
     this->Strip_->Show(id, tr("Reading %1").arg(file), -1.0, tr("Cancel"));
-    while (!job->cancelled &&
-           job->isDone.wait_for(std::chrono::milliseconds(2)) != std::future_status::ready) {
+    while (!job->cancelled && !job->files->IsRead(0.002)) {
       QCoreApplication::processEvents(QEventLoop::AllEvents, Slice_ms);
     }
     this->Jobs_.erase(id);
@@ -114,16 +98,12 @@ std::string FileCommands::Execute(const std::string& command) {
   }
   const std::shared_ptr<Job> job = found->second;
   this->Ready_.erase(found);
-  if (job->failed.has_error()) {
-    return job->failed.SerializeAsString();
+  if (job->files->Failed().has_error()) {
+    return job->files->Failed().SerializeAsString();
   }
-  const session::ReadBeforehand::Scope scope(job->read.get());
-  // Another terrain may have taken the name meanwhile: then the command chooses one, and reads.
-  const auto& state = this->Session_->GetInterpreter().GetState();
-  const auto scene = state.scenes.find(job->command.scene());
-  const bool taken = job->command.has_open_terrain() && scene != state.scenes.end() &&
-                     scene->second.terrains.count(job->command.open_terrain().name()) != 0;
-  return this->Session_->Execute(taken ? command : job->command.SerializeAsString());
+  const session::ReadBeforehand::Scope scope(job->files->Files());
+  return this->Session_->Execute(
+      job->files->ToExecute(this->Session_->GetInterpreter().GetState()).SerializeAsString());
 }
 
 } // namespace dspace::widgets

@@ -61,4 +61,9 @@ QString TaskStrip::Text(long id) const {
   return found == this->Rows_.end() ? QString() : found->second.text->text();
 }
 
+bool TaskStrip::Holds(const QString& text) const {
+  return std::any_of(this->Rows_.begin(), this->Rows_.end(),
+                     [&](const auto& entry) { return entry.second.text->text().contains(text); });
+}
+
 } // namespace dspace::widgets
