@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace dspace {
 namespace {
 
-constexpr int Margin = 4; // posts around the lattice
+constexpr int Margin = 4;      // posts around the lattice
+constexpr int RowsAtOnce = 32; // that are read
 constexpr int RowMargin = 2 * HeldPosts::RowsToSpare;
 
 } // namespace
@@ -29,22 +31,23 @@ std::shared_ptr<const HeldPosts> HeldPosts::Read(ElevationPyramid& pyramid, int 
   held->Every_ = every;
   held->Share_ = place.width / every;
   held->Heights_.resize(std::size_t(place.width) * std::size_t(place.height));
-  held->SpanColumns_ = (place.width + SpanSide - 1) / SpanSide;
   const float infinity = std::numeric_limits<float>::infinity();
-  held->Spans_.assign(std::size_t(held->SpanColumns_) *
-                          std::size_t((place.height + SpanSide - 1) / SpanSide),
+  SpanLevel finest;
+  finest.columns = (place.width + SpanSide - 1) / SpanSide;
+  finest.rows = (place.height + SpanSide - 1) / SpanSide;
+  finest.spans.assign(std::size_t(finest.columns) * std::size_t(finest.rows),
                       {infinity, -infinity});
-  std::vector<float> rows(std::size_t(place.width) * SpanSide);
-  for (int r = 0; r < place.height; r += SpanSide) {
+  std::vector<float> rows(std::size_t(place.width) * RowsAtOnce);
+  for (int r = 0; r < place.height; r += RowsAtOnce) {
     if (proceed && !proceed()) {
       return nullptr;
     }
-    const int count = std::min(SpanSide, place.height - r);
+    const int count = std::min(RowsAtOnce, place.height - r);
     pyramid.Read({0, place.column, place.row + r, place.width, count}, rows.data());
     for (int j = 0; j < count; ++j) {
       const float* from = &rows[std::size_t(j) * std::size_t(place.width)];
       float* to = &held->Heights_[std::size_t(r + j) * std::size_t(place.width)];
-      HeightSpan* spans = &held->Spans_[std::size_t(r / SpanSide * held->SpanColumns_)];
+      HeightSpan* spans = &finest.spans[std::size_t((r + j) / SpanSide * finest.columns)];
       for (int c = 0; c < place.width; ++c) {
         const float h = from[c];
         to[c % every * held->Share_ + c / every] = h;
@@ -54,24 +57,60 @@ std::shared_ptr<const HeldPosts> HeldPosts::Read(ElevationPyramid& pyramid, int 
       }
     }
   }
+  held->Spans_.push_back(std::move(finest));
+  held->AddSpanLevels();
   return held;
 }
 
+void HeldPosts::AddSpanLevels() {
+  while (std::max(this->Spans_.back().columns, this->Spans_.back().rows) > 1) {
+    const SpanLevel& fine = this->Spans_.back();
+    SpanLevel coarse;
+    coarse.columns = (fine.columns + 1) / 2;
+    coarse.rows = (fine.rows + 1) / 2;
+    for (int r = 0; r < coarse.rows; ++r) {
+      for (int c = 0; c < coarse.columns; ++c) {
+        HeightSpan all =
+            fine.spans[std::size_t(2 * r) * std::size_t(fine.columns) + std::size_t(2 * c)];
+        for (int k = 1; k < 4; ++k) {
+          const int column = std::min(2 * c + k % 2, fine.columns - 1);
+          const int row = std::min(2 * r + k / 2, fine.rows - 1);
+          const HeightSpan& span =
+              fine.spans[std::size_t(row) * std::size_t(fine.columns) + std::size_t(column)];
+          all.least = std::min(all.least, span.least);
+          all.greatest = std::max(all.greatest, span.greatest);
+        }
+        coarse.spans.push_back(all);
+      }
+    }
+    this->Spans_.push_back(std::move(coarse));
+  }
+}
+
 HeightSpan HeldPosts::SpanOf(const PostBlock& block) const {
-  const float infinity = std::numeric_limits<float>::infinity();
-  HeightSpan all = {infinity, -infinity};
-  const auto clamped = [](std::int64_t value, int most) {
-    return std::clamp<std::int64_t>(value, 0, most - 1) / SpanSide;
+  // Of the level at which the block takes three squares a side at most.
+  std::size_t level = 0;
+  int side = SpanSide;
+  while (std::max(block.width, block.height) > 2 * side && level + 1 < this->Spans_.size()) {
+    ++level;
+    side *= 2;
+  }
+  const SpanLevel& squares = this->Spans_[level];
+  const auto clamped = [side](std::int64_t value, int most) {
+    return int(std::clamp<std::int64_t>(value, 0, most - 1)) / side;
   };
   const std::int64_t left = block.column - this->Place_.column;
   const std::int64_t top = block.row - this->Place_.row;
-  const std::int64_t c1 = clamped(left + block.width - 1, this->Place_.width);
-  const std::int64_t r1 = clamped(top + block.height - 1, this->Place_.height);
-  for (std::int64_t r = clamped(top, this->Place_.height); r <= r1; ++r) {
-    for (std::int64_t c = clamped(left, this->Place_.width); c <= c1; ++c) {
-      const HeightSpan& span = this->Spans_[std::size_t(r * this->SpanColumns_ + c)];
-      all.least = std::min(all.least, span.least);
-      all.greatest = std::max(all.greatest, span.greatest);
+  const int c0 = clamped(left, this->Place_.width);
+  const int c1 = clamped(left + block.width - 1, this->Place_.width);
+  const int r1 = clamped(top + block.height - 1, this->Place_.height);
+  const float infinity = std::numeric_limits<float>::infinity();
+  HeightSpan all = {infinity, -infinity};
+  for (int r = clamped(top, this->Place_.height); r <= r1; ++r) {
+    const HeightSpan* row = &squares.spans[std::size_t(r) * std::size_t(squares.columns)];
+    for (int c = c0; c <= c1; ++c) {
+      all.least = std::min(all.least, row[c].least);
+      all.greatest = std::max(all.greatest, row[c].greatest);
     }
   }
   return all;

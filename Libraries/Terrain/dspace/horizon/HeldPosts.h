@@ -36,18 +36,24 @@ public:
     return std::ptrdiff_t(r - this->Place_.row) * this->Place_.width +
            column % this->Every_ * this->Share_ + column / this->Every_;
   }
-  // Bounds of the heights of a block.
+  // Bounds of the heights of a block, or of a somewhat larger one; in constant time.
   HeightSpan SpanOf(const PostBlock& block) const;
 
 private:
-  static constexpr int SpanSide = 32; // posts
+  // Bounds of squares of posts, whose side doubles from one level to the next.
+  struct SpanLevel {
+    int columns = 0;
+    int rows = 0;
+    std::vector<HeightSpan> spans;
+  };
+  static constexpr int SpanSide = 8; // posts, of the finest level
+  void AddSpanLevels();
 
   PostBlock Place_;
   int Every_ = 1;
   std::ptrdiff_t Share_ = 0; // columns of a remainder
   std::vector<float> Heights_;
-  std::vector<HeightSpan> Spans_;
-  int SpanColumns_ = 0;
+  std::vector<SpanLevel> Spans_;
 };
 
 } // namespace dspace
