@@ -23,6 +23,22 @@ Eigen::Vector3d TakeUnit(LensNumbers& numbers, const char* name) {
   return v;
 }
 
+// Sine and cosine of `angle`, from those of `angle` + `step`.
+void TurnBack(double step, double angle, double& sine, double& cosine) {
+  constexpr double Short = 0.05; // [rad]: the next terms of the series are below 1e-17
+  if (std::abs(step) > Short) {
+    sine = std::sin(angle);
+    cosine = std::cos(angle);
+    return;
+  }
+  const double q = step * step;
+  const double s = step * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0)));
+  const double c = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0)));
+  const double before = sine;
+  sine = before * c - cosine * s;
+  cosine = cosine * c + before * s;
+}
+
 } // namespace
 
 CahvoreLens::CahvoreLens(Kind kind, LensNumbers& numbers)
@@ -137,8 +153,7 @@ bool CahvoreLens::AngleOf(double along, double across, double& angle, double& sl
     if (std::abs(error) <= small || step * step * curvature <= 1e-17 * slope) {
       return angle >= 0.0;
     }
-    s = std::sin(angle);
-    c = std::cos(angle);
+    TurnBack(step, angle, s, c);
   }
   return angle >= 0.0 && std::isfinite(angle);
 }

@@ -141,7 +141,7 @@ void LensTile::PutRadiance(const LensMap::Sample& sample, const SourceViews::Vie
     return (1.0f - fy) * ((1.0f - fx) * load(top) + fx * load(top + 3)) +
            fy * ((1.0f - fx) * load(top + row) + fx * load(top + row + 3));
   };
-  const int taps = std::clamp(int(std::lround(sample.footprint)), 1, MostTaps);
+  const int taps = std::clamp(int(sample.footprint + 0.5f), 1, MostTaps);
   Color sum = Color::Zero();
   if (taps == 1) {
     sum = at(sample.x, sample.y);
