@@ -183,10 +183,11 @@ def test_bad_lenses_are_rejected_and_change_nothing(place):
     scene, _, view = place
     model, _ = LENSES["pinhole"]
     view.lens = model
-    flat = dspace.CameraModel("orthographic", size=(8, 8), scale=(10, 10), center=(3.5, 3.5))
+    lines = dspace.CameraModel("line_scan", size=(8, 2), focal_length=1.0, matrix=(100, 0, 0, 100), center=(3.5, 0), row=0.0,
+                               line=(0, 1), positions=(0, 0, 0, 0, 1, 0), rotations=(1, 0, 0, 0, 1, 0, 0, 0))
     sizeless = dspace.CameraModel("pinhole", focal=FOCAL, center=CENTER)
     beyond = dspace.CameraModel("brown", size=(8, 8), focal=(100, 100), center=(1000, 1000), radial=(-0.3,))
-    for lens, kind, message in ((flat, dspace.Unsupported, "its rays are parallel"),
+    for lens, kind, message in ((lines, dspace.Unsupported, "its row of pixels moves"),
                                 (sizeless, dspace.InvalidArgument, "for which size of image"),
                                 (beyond, dspace.InvalidArgument, "no pixel of its image has a ray"),
                                 ("brown", dspace.WrongType, "a dspace.CameraModel, or None")):

@@ -10,7 +10,8 @@ import dspace
 SIZE = (320, 240)
 # Of the targets [rad], 1.3 pixels and more: the middle of a sphere's image is off its centre's by about f tan(t) R² / cos²(t)
 # through a pinhole, 0.05 pixels here, and by less through a fish-eye.
-RADIUS = {"pinhole": 0.009, "brown": 0.009, "equidistant": 0.02, "double_sphere": 0.016, "cahvore": 0.015}
+RADIUS = {"pinhole": 0.009, "brown": 0.009, "equidistant": 0.02, "double_sphere": 0.016, "cahvore": 0.015,
+          "orthographic": 0.014}
 FOCAL, CENTER = np.array((150.0, 150.0)), np.array((159.5, 119.5))
 
 
@@ -40,6 +41,10 @@ def double_sphere(p, xi=-0.2, alpha=0.57):
     return 110.0 * p[:, :2] / (alpha * d + (1 - alpha) * z) + CENTER
 
 
+def orthographic(p):
+    return 110.0 * p[:, :2] + CENTER
+
+
 E = (0.0, 0.0, 0.0)  # TestSourceViews tests a pupil that moves
 
 
@@ -67,6 +72,7 @@ LENSES = {
                       double_sphere),
     "cahvore": (dspace.CameraModel("cahvore", size=SIZE, C=(0, 0, 0), A=(0, 0, 1), H=(110, 0, CENTER[0]),
                                    V=(0, 110, CENTER[1]), O=(0, 0, 1), R=(0, -0.02, 0), E=E, linearity=0), cahvore),
+    "orthographic": (dspace.CameraModel("orthographic", size=SIZE, scale=(110, 110), center=CENTER), orthographic),
 }
 
 
@@ -125,7 +131,7 @@ def test_points_lie_where_the_formula_puts_them(session, camera, name):
     assert lens.pupil_shift == 0 and lens.pupil_beyond == 0
 
 
-@pytest.mark.parametrize("name", ["brown", "equidistant", "cahvore"])
+@pytest.mark.parametrize("name", ["brown", "equidistant", "cahvore", "orthographic"])
 def test_tiles_make_the_same_bytes(session, camera, name):
     scene = session.scene()
     model, _ = LENSES[name]
@@ -231,12 +237,35 @@ def test_rejected(session, camera, wrong, kind, message):
         session.scene().simulate_image(**given)
 
 
-def test_parallel_rays_and_absent_sizes_are_rejected(session, camera):
+def test_parallel_rays_see_what_an_orthographic_camera_sees(session, camera):
     scene = session.scene()
-    flat = dspace.CameraModel("orthographic", size=(8, 8), scale=(10, 10), center=(3.5, 3.5))
-    with pytest.raises(dspace.Unsupported, match="its rays are parallel"):
-        scene.simulate_image(flat, camera)
-    np.testing.assert_allclose(scene.project_points((0.1, 0.2, 5), flat, camera), (4.5, 5.5), atol=1e-12)
+    scene.add_sphere(0.4, position=(0.2, -0.1, 3.0), color="orange")
+    scene.add_box((0.5, 0.3, 0.4), position=(-0.5, 0.3, 2.0), color="gray")
+    scene.add_plane(9, 9, position=(0, 0, 6), color="white")
+    scene.sun.set(direction=(0.2, -0.3, -1))
+    flat = dspace.CameraModel("orthographic", size=SIZE, scale=(100, 100), center=CENTER)
+    np.testing.assert_allclose(scene.project_points((0.1, 0.2, 5), flat, camera), (CENTER[0] + 10, CENTER[1] + 20), atol=1e-12)
+    wanted = dict(color=False, radiance=True, range=True, label=True, emission=True)
+    planes = scene.simulate_image(flat, camera, samples=1, **wanted)
+    ideal = scene.add_camera("ideal", height=2.4)
+    ideal.attach(scene.root)
+    view = scene.add_viewport(SIZE, "ideal", samples=1)
+    view.set(shadows=True)
+    for plane, array in view.capture(physical_only=True, **wanted).items():
+        both = np.isfinite(array) & np.isfinite(planes[plane]) if plane != "label" else np.ones(array.shape, bool)
+        assert both.mean() > 0.99
+        np.testing.assert_allclose(planes[plane][both], array[both], rtol=2e-3, atol=1e-4)
+    # Pixels half as many down lie between two rows of these.
+    coarse = dspace.CameraModel("orthographic", size=(SIZE[0], SIZE[1] // 2), scale=(100, 50),
+                                center=(CENTER[0], 0.5 * (CENTER[1] - 0.5)))
+    label = scene.simulate_image(coarse, camera, label=True, samples=1)["label"]
+    assert len(np.unique(label)) == 3
+    for rows in (planes["label"][0::2], planes["label"][1::2]):
+        assert 0.985 < (label == rows).mean()
+
+
+def test_absent_sizes_are_rejected(session, camera):
+    scene = session.scene()
     with pytest.raises(dspace.InvalidArgument, match="for which size"):
         scene.simulate_image(dspace.CameraModel("pinhole", focal=(1, 1), center=(0, 0)), camera)
     with pytest.raises(dspace.InvalidArgument, match="accepted: 1 to 1000000"):

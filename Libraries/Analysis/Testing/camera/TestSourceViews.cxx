@@ -206,7 +206,7 @@ TEST(SourceViews, AreAsFineAsTheLens) {
         LensRay a, b;
         ASSERT_TRUE(model.lens->Unproject({x - 0.5, double(y)}, a) &&
                     model.lens->Unproject({x + 0.5, double(y)}, b));
-        const SourceViews::Place one = views.Find(a.direction), two = views.Find(b.direction);
+        const SourceViews::Place one = views.Find(a), two = views.Find(b);
         ASSERT_GE(one.face, 0);
         if (one.face == two.face) {
           least = std::min(least, std::hypot(one.x - two.x, one.y - two.y));
@@ -266,9 +266,35 @@ TEST(SourceViews, PixelsWithoutARayAreEmpty) {
     seen += planes.radiance[std::size_t(3 * i + 2)] > 0.5f;
   }
   EXPECT_NEAR(seen, M_PI * 70.27 * 70.27, 60.0);
-  EXPECT_THROW(
-      SourceViews(Model("orthographic", {{"scale", {10, 10}}, {"center", {5, 5}}}, 10, 10), 64),
-      Error);
+}
+
+// Rays that are parallel have one view, whose pixels are the picture's where both scales are one.
+TEST(SourceViews, ParallelRaysHaveOneView) {
+  const CameraModel model =
+      Model("orthographic", {{"scale", {10, 10}}, {"center", {40.25, 29.5}}}, 80, 60);
+  const SourceViews views(model, 64);
+  EXPECT_TRUE(views.Parallel());
+  ASSERT_EQ(views.Faces().size(), 1u);
+  EXPECT_EQ(views.Eye(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(views.PupilShift(), 0.0);
+  const LensMap map(views, *model.lens, 0, 0, 80, 60);
+  EXPECT_EQ(map.WithoutRay(), 0u);
+  EXPECT_FALSE(map.MovesPupil());
+  for (const LensMap::Pixel& pixel : map.Pixels()) {
+    EXPECT_NEAR(pixel.place.x, std::round(pixel.place.x), 1e-9);
+    EXPECT_NEAR(pixel.place.y, std::round(pixel.place.y), 1e-9);
+    EXPECT_FLOAT_EQ(pixel.footprint, 1.0f);
+    // The view's pixel is seen at the ray's own place [m].
+    const SourceViews::View view = views.ViewOf(views.BlockOf(pixel.place));
+    EXPECT_NEAR(view.left + (pixel.place.x - view.x + 0.5) / views.Faces()[0].scale,
+                pixel.ray.origin.x(), 1e-12);
+    EXPECT_NEAR(view.top + (pixel.place.y - view.y + 0.5) / views.Faces()[0].scale,
+                pixel.ray.origin.y(), 1e-12);
+  }
+  // The finer scale holds for both axes.
+  const CameraModel wide =
+      Model("orthographic", {{"scale", {10, 25}}, {"center", {39.5, 29.5}}}, 80, 60);
+  EXPECT_DOUBLE_EQ(SourceViews(wide, 64).Faces()[0].scale, 25.0);
 }
 
 } // namespace

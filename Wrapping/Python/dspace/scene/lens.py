@@ -22,7 +22,7 @@ class ViewportLens(Strict):
         pixel's own ray (a radius searches the source view of that pixel alone); Unsupported is raised for other planes and
         explanations, which simulate_image() has. Captions, props of VTK in the viewport's own renderer and gradients of the
         background are left out. Raises InvalidArgument for a model without a size, or of which no pixel has a ray;
-        Unsupported for line scans and parallel rays."""
+        Unsupported for line scans."""
         found = self._info().lens
         return CameraModel.from_json(found) if found else None
 

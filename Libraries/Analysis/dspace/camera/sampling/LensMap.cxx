@@ -9,7 +9,7 @@ namespace dspace {
 
 LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, int width,
                  int height)
-    : Width_(width), Height_(height), Moves_(lens.MovesPupil()),
+    : Width_(width), Height_(height), Moves_(lens.MovesPupil() && !views.Parallel()),
       Pixels_(std::size_t(width) * std::size_t(height)) {
   constexpr double Distance = 1e3;     // where the lens' scale is taken [m]
   std::vector<Sample>* last = nullptr; // of the block that the pixel before is in
@@ -20,7 +20,7 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
     const Eigen::Vector2d position(x + int(at % std::size_t(width)),
                                    y + int(at / std::size_t(width)));
     if (lens.Unproject(position, pixel.ray)) {
-      pixel.place = views.Find(pixel.ray.direction);
+      pixel.place = views.Find(pixel.ray);
     }
     if (pixel.place.face < 0) {
       ++this->WithoutRay_;
@@ -37,8 +37,9 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
     LensModel::Jacobian jacobian;
     if (lens.Project(pixel.ray.origin + Distance * pixel.ray.direction, back, &jacobian)) {
       const double z = face.R_CF.col(2).dot(pixel.ray.direction);
-      // The direction at Z = 1 of the face is 1 / z long: pixels per tangent there.
-      const Eigen::Matrix2d across = jacobian * face.R_CF.leftCols<2>() * (Distance * z);
+      // The direction at Z = 1 of the face is 1 / z long: pixels per tangent there, or per metre.
+      const Eigen::Matrix2d across =
+          jacobian * face.R_CF.leftCols<2>() * (views.Parallel() ? 1.0 : Distance * z);
       const double area = std::abs(across.determinant());
       pixel.footprint = float(face.scale / std::sqrt(std::max(area, 1e-12)));
     }

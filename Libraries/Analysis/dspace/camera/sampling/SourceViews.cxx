@@ -79,9 +79,8 @@ SourceViews::SourceViews(const CameraModel& model, int block) : Block_(block) {
                 "a beam for each pixel");
   }
   if (std::string(lens.Type()) == "orthographic") {
-    throw Error(Error::Kind::Unsupported, model.Label(),
-                "its rays are parallel; accepted: a lens whose rays meet, or a camera with an "
-                "orthographic projection");
+    this->SetParallel(model);
+    return;
   }
   const int columns = std::min(model.width, GridSide), rows = std::min(model.height, GridSide);
   std::vector<Sample> samples(std::size_t(columns) * std::size_t(rows));
@@ -165,17 +164,46 @@ SourceViews::SourceViews(const CameraModel& model, int block) : Block_(block) {
     const double more = single ? spare : 2.0 / scale;
     face.left = bounds[0] - more;
     face.top = bounds[2] - more;
-    const double width = std::ceil((bounds[1] + more - face.left) * scale);
-    const double height = std::ceil((bounds[3] + more - face.top) * scale);
-    if (!(std::max(width, height) <= Largest)) {
-      throw Error(Error::Kind::Resource, model.Label(),
-                  "a source view of " + NumberText(std::max(width, height)) +
-                      " pixels a side would be needed; accepted: up to " + NumberText(Largest));
-    }
-    face.width = int(width);
-    face.height = int(height);
-    this->Faces_.push_back(face);
+    this->AddFace(face, {bounds[1] + more, bounds[3] + more}, model);
   }
+}
+
+// The picture's own pixels, or finer ones where it has other scales across than down.
+void SourceViews::SetParallel(const CameraModel& model) {
+  this->Parallel_ = true;
+  LensRay first, last;
+  Eigen::Vector2d back;
+  LensModel::Jacobian jacobian;
+  const LensModel& lens = *model.lens;
+  if (!lens.Unproject({-0.5, -0.5}, first) ||
+      !lens.Unproject({model.width - 0.5, model.height - 0.5}, last) ||
+      !lens.Project(first.origin + first.direction, back, &jacobian)) {
+    Reject(model.Label(), "no pixel of its image has a ray; accepted: finite scales and centre");
+  }
+  Face face;
+  face.scale = jacobian.leftCols<2>().cwiseAbs().maxCoeff();
+  const Eigen::Vector2d low = first.origin.head<2>().cwiseMin(last.origin.head<2>());
+  const Eigen::Vector2d high = first.origin.head<2>().cwiseMax(last.origin.head<2>());
+  // With the picture's scale the grids are the same: no pixel is interpolated.
+  face.left = low.x() - 2.0 / face.scale;
+  face.top = low.y() - 2.0 / face.scale;
+  this->Index_.push_back(0);
+  this->AddFace(face, high.array() + 2.0 / face.scale, model);
+}
+
+// A face up to `far`, right and bottom.
+void SourceViews::AddFace(Face face, const Eigen::Vector2d& far, const CameraModel& model) {
+  // What is whole but for rounding has no further pixel.
+  const double width = std::ceil((far.x() - face.left) * face.scale - 1e-9);
+  const double height = std::ceil((far.y() - face.top) * face.scale - 1e-9);
+  if (!(std::max(width, height) <= Largest)) {
+    throw Error(Error::Kind::Resource, model.Label(),
+                "a source view of " + NumberText(std::max(width, height)) +
+                    " pixels a side would be needed; accepted: up to " + NumberText(Largest));
+  }
+  face.width = int(width);
+  face.height = int(height);
+  this->Faces_.push_back(face);
 }
 
 int SourceViews::FaceOf(const Eigen::Vector3d& d) const {
@@ -192,16 +220,18 @@ int SourceViews::FaceOf(const Eigen::Vector3d& d) const {
   return this->Index_[d.y() > 0.0 ? 3 : 4];
 }
 
-SourceViews::Place SourceViews::Find(const Eigen::Vector3d& direction) const {
+SourceViews::Place SourceViews::Find(const LensRay& ray) const {
   Place place;
-  place.face = direction.allFinite() ? this->FaceOf(direction) : -1;
+  place.face = ray.direction.allFinite() ? this->FaceOf(ray.direction) : -1;
   if (place.face < 0) {
     return place;
   }
   const Face& face = this->Faces_[std::size_t(place.face)];
-  const Eigen::Vector3d d = face.R_CF.transpose() * direction;
-  place.x = (d.x() / d.z() - face.left) * face.scale - 0.5;
-  place.y = (d.y() / d.z() - face.top) * face.scale - 0.5;
+  const Eigen::Vector3d d = face.R_CF.transpose() * ray.direction;
+  const Eigen::Vector2d at =
+      this->Parallel_ ? ray.origin.head<2>().eval() : (d.head<2>() / d.z()).eval();
+  place.x = (at.x() - face.left) * face.scale - 0.5;
+  place.y = (at.y() - face.top) * face.scale - 0.5;
   if (!(place.x >= 0.0 && place.y >= 0.0 && place.x <= face.width - 1.0 &&
         place.y <= face.height - 1.0)) {
     place.face = -1;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <dspace/commands/viewports/SourceCamera.h>
+
 #include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
 
@@ -90,7 +92,6 @@ std::shared_ptr<const LensPlanes> LensPictures::Get(vtkDspaceRenderContext* cont
     return found->second;
   }
   const SourceViews::View view = this->Views_->ViewOf(block);
-  const SourceViews::Face& face = this->Views_->Faces()[std::size_t(block.face)];
   if (!this->Viewport_) {
     this->Viewport_ = vtkSmartPointer<vtkDspaceViewport>::New();
     this->Viewport_->Initialize(context, scene, "camera simulation", "main", view.width,
@@ -101,17 +102,9 @@ std::shared_ptr<const LensPlanes> LensPictures::Get(vtkDspaceRenderContext* cont
   }
   this->Viewport_->Resize(view.width, view.height);
   CameraPose camera = request.lens.camera;
-  Pose X_CF;
-  X_CF.position = this->Views_->Eye();
-  X_CF.rotation = Eigen::Quaterniond(face.R_CF);
-  camera.X_FC = camera.X_FC * X_CF;
-  Projection projection;
-  projection.kind = Projection::Kind::Frustum;
-  projection.left = view.left;
-  projection.right = view.right;
-  projection.top = view.top;
-  projection.bottom = view.bottom;
-  this->Viewport_->SetFixedView(camera, projection);
+  const SourceCamera source = SourceCameraOf(*this->Views_, block.face, view);
+  camera.X_FC = camera.X_FC * source.X_CF;
+  this->Viewport_->SetFixedView(camera, source.projection);
   std::shared_ptr<const LensPlanes> planes =
       ToPlanes(this->Viewport_->GetCapture(ToRequest(request, depth)));
   ++result.sourceViews;

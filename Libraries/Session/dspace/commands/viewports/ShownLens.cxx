@@ -3,6 +3,7 @@
 #include <dspace/Checks.h>
 #include <dspace/camera/FittedImage.h>
 #include <dspace/camera/sampling/LensMap.h>
+#include <dspace/commands/viewports/SourceCamera.h>
 
 namespace dspace::session {
 namespace {
@@ -30,13 +31,9 @@ std::shared_ptr<const ViewLens> ShowLens(const dspace::CameraModel& model, int w
   for (int i = 0; i < int(views.Faces().size()); ++i) {
     const SourceViews::View view = views.ViewOf({i, 0, 0});
     ViewLens::Source source;
-    source.X_CF.position = views.Eye();
-    source.X_CF.rotation = Eigen::Quaterniond(views.Faces()[std::size_t(i)].R_CF);
-    source.projection.kind = Projection::Kind::Frustum;
-    source.projection.left = view.left;
-    source.projection.right = view.right;
-    source.projection.top = view.top;
-    source.projection.bottom = view.bottom;
+    const SourceCamera camera = SourceCameraOf(views, i, view);
+    source.X_CF = camera.X_CF;
+    source.projection = camera.projection;
     source.width = view.width;
     source.height = view.height;
     lens->sources.push_back(source);
