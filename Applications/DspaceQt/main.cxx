@@ -1,6 +1,7 @@
 // DspaceQt: scenes, recordings and terrain at a desktop. Wiring only: the windows are in
 // Libraries/Widgets, and what menus do is in the Python package, dspace/application.
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 #include <memory>
@@ -15,6 +16,7 @@
 #include <QPainter>
 #include <QTimer>
 
+#include <dspace/commands/beforehand/ReadApart.h>
 #include <dspace/widgets/console/PythonInterpreter.h>
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/window/MainWindow.h>
@@ -162,7 +164,14 @@ int Start(QApplication&) {
   if (parser.isSet(screenshot)) {
     TakeScreenshot(window, parser.value(screenshot), wait);
   }
-  return QApplication::exec();
+  // Without a window, because it was closed while files were opened, nothing would end the loop.
+  const int code = window.isVisible() ? QApplication::exec() : 0;
+  constexpr double Patience = 2.0; // [s]
+  if (!dspace::session::WaitForReaders(Patience)) {
+    std::cout << std::flush;
+    std::_Exit(code); // what such a thread uses must not be cleaned up
+  }
+  return code;
 }
 
 } // namespace

@@ -15,6 +15,10 @@
 #include <vtkNew.h>
 
 int main(int argc, char** argv) {
+  if (argc < 2) {
+    std::cerr << "usage: qt_embed MODEL [SECONDS]\n";
+    return 2;
+  }
   dspace::widgets::PrepareApplication(); // before the QApplication
   QApplication application(argc, argv);
   const auto scene = std::make_shared<dspace::Scene>("scene");

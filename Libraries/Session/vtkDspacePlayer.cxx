@@ -6,12 +6,12 @@
 #include <future>
 #include <memory>
 #include <optional>
-#include <thread>
 #include <utility>
 
 #include <dspace/Error.h>
 #include <dspace/HomeProcess.h>
 #include <dspace/commands/beforehand/FilesAhead.h>
+#include <dspace/commands/beforehand/ReadApart.h>
 #include <dspace/link/watching/ViewerViews.h>
 #include <dspace/link/watching/ViewportCopies.h>
 #include <dspace/messages/ErrorReply.h>
@@ -29,7 +29,8 @@ namespace {
 struct Opening {
   std::string path;
   bool check = true;
-  std::atomic<bool> cancelled{false};
+  // Also asked when the open recording unpacks more.
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
   std::unique_ptr<dspace::session::RecordingReader> reader;
   dspace::session::PlaybackSources sources; // goes before the reader
   dspace::v1::Reply failed;                 // where it has an error
@@ -38,13 +39,14 @@ struct Opening {
 
   void Read() {
     this->failed = dspace::session::Catch([this] {
-      this->reader = std::make_unique<dspace::session::RecordingReader>(this->path);
-      this->sources = dspace::session::PlaybackSources::Read(*this->reader, this->check, [this] {
-        if (this->cancelled) {
-          throw dspace::Error(dspace::Error::Kind::Resource, "recording '" + this->path + "'",
-                              "opening it was cancelled");
+      const auto checkCancel = [stop = this->cancelled, object = "recording '" + this->path + "'"] {
+        if (*stop) {
+          throw dspace::Error(dspace::Error::Kind::Resource, object, "opening it was cancelled");
         }
-      });
+      };
+      this->reader = std::make_unique<dspace::session::RecordingReader>(this->path);
+      this->sources =
+          dspace::session::PlaybackSources::Read(*this->reader, this->check, checkCancel);
       return dspace::v1::Reply();
     });
     this->done.set_value();
@@ -124,7 +126,9 @@ vtkDspacePlayer::vtkDspacePlayer() : Impl(std::make_unique<Internals>()) {}
 vtkDspacePlayer::~vtkDspacePlayer() {
   if (!this->Impl->home.IsHere()) {
     (void)this->Impl.release(); // HomeProcess.h
+    return;
   }
+  this->Close();
 }
 
 void vtkDspacePlayer::PrintSelf(ostream& os, vtkIndent indent) {
@@ -150,7 +154,13 @@ void vtkDspacePlayer::BeginOpen(const std::string& path, bool check) {
   this->Impl->opening = std::make_shared<Opening>();
   this->Impl->opening->path = path;
   this->Impl->opening->check = check;
-  std::thread([opening = this->Impl->opening] { opening->Read(); }).detach();
+  this->Impl->opened = dspace::session::Catch([this] {
+    dspace::session::ReadApart([opening = this->Impl->opening] { opening->Read(); });
+    return dspace::v1::Reply();
+  });
+  if (this->Impl->opened.has_error()) {
+    this->Impl->opening.reset();
+  }
 }
 
 int vtkDspacePlayer::WaitForOpen(double seconds) {
@@ -158,8 +168,9 @@ int vtkDspacePlayer::WaitForOpen(double seconds) {
   if (!impl.opening) {
     return impl.playback ? 1 : -1;
   }
-  if (!impl.playback && impl.opening->isDone.wait_for(std::chrono::duration<double>(seconds)) !=
-                            std::future_status::ready) {
+  constexpr double Longest = 1e6; // [s], which the clock can hold
+  const std::chrono::duration<double> wait(std::clamp(seconds, 0.0, Longest));
+  if (!impl.playback && impl.opening->isDone.wait_for(wait) != std::future_status::ready) {
     return 0;
   }
   bool there = false;
@@ -268,7 +279,7 @@ std::string vtkDspacePlayer::GetFolder() {
 
 void vtkDspacePlayer::Close() {
   if (this->Impl->opening) {
-    this->Impl->opening->cancelled = true;
+    *this->Impl->opening->cancelled = true;
     this->Impl->opening.reset();
   }
   this->Impl->opened.Clear();

@@ -91,12 +91,18 @@ vec4 photometricAngles(vec3 N, vec3 positionVC, int parallel)
   vec3 V = parallel == 1 ? vec3(0.0, 0.0, 1.0) : normalize(-positionVC);
   float lit = 1.0;
 #ifdef DSPACE_SHADOWED
-  vec3 planeVC = cross(dFdx(positionVC), dFdy(positionVC));
+  vec3 across = dFdx(positionVC);
+  vec3 down = dFdy(positionVC);
+  vec3 planeVC = cross(across, down);
   lit = sunLit(positionVC, planeVC);
 #ifdef DSPACE_HORIZON
-  // A triangle that turns away from the Sun is dark, as rays have it, although a corner sees the Sun. Pictures
-  // leave that to the smooth normal: the triangles would be seen.
-  lit = min(lit, discLit(dot(normalize(planeVC), towardsSunVC)));
+  // A triangle that turns away from the Sun is dark, as rays have it, although a corner sees the Sun. Colours
+  // leave that to the smooth normal: the triangles would show. Where a pixel is as small as single
+  // precision rounds positions, its plane is not known.
+  if (min(length(across), length(down)) > 1e-4 * length(positionVC))
+  {
+    lit = min(lit, discLit(dot(normalize(planeVC), towardsSunVC)));
+  }
 #endif
 #endif
 #ifdef DSPACE_ECLIPSES

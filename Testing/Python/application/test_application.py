@@ -30,6 +30,7 @@ class Host:
 
     def breathe(self):
         self.breaths += 1
+        return True
 
     def show(self, shown, name, title):
         session = shown.GetSession() if hasattr(shown, "GetSession") else shown

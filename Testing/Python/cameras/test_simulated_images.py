@@ -228,6 +228,7 @@ def test_a_server_draws_the_same(anywhere):
     (dict(exposure=0.0), dspace.InvalidArgument, "exposure is 0"),
     (dict(tile=8), dspace.InvalidArgument, "64 to 4096"),
     (dict(hide="nothing"), dspace.NotFound, "nothing"),
+    (dict(tile=4097), dspace.InvalidArgument, "64 to 4096"),
     (dict(model=3), dspace.WrongType, "a dspace.CameraModel"),
     (dict(frame="none", camera=None), dspace.NotFound, "none"),
 ])

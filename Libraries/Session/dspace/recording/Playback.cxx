@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <sstream>
 #include <thread>
 #include <utility>
 
 #include <dspace/Error.h>
+#include <dspace/messages/CommandTraits.h>
 #include <dspace/recording/RecordingDatabase.h>
 
 namespace dspace::session {
 namespace {
+
+constexpr double LongestWait = 0.002; // [s]
 
 std::string Seconds(double time_s) {
   std::ostringstream text;
@@ -26,6 +30,9 @@ PlaybackSources PlaybackSources::Read(RecordingReader& reader, bool checkFiles,
   sources.steps = StepsOf(reader);
   if (sources.steps.steps.empty()) {
     RejectNoSteps(reader);
+  }
+  if (checkCancel) {
+    checkCancel();
   }
   sources.files = std::make_unique<RecordedFiles>(reader, checkFiles, std::move(checkCancel));
   return sources;
@@ -157,6 +164,8 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
   const auto late = [&] {
     return std::chrono::duration<double>(Clock::now() - began).count() >= seconds;
   };
+  // A slice waits for files no longer than this [s]: its thread has other things to do.
+  const double wait = std::isinf(seconds) ? seconds : std::min(seconds, LongestWait);
   if (!this->Base_ && this->SnapshotOnTheWay(target)) {
     this->Begin(target);
   }
@@ -164,7 +173,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
     const std::vector<v1::Command>& commands = this->Base_->commands;
     this->NoteForeign(this->Base_->foreignText, "snapshot ", this->Base_->seq);
     while (this->BaseDone_ < commands.size()) {
-      if (!this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq, seconds)) {
+      if (!this->Execute(commands[this->BaseDone_], "snapshot ", this->Base_->seq, wait)) {
         return false;
       }
       ++this->BaseDone_;
@@ -185,7 +194,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
     this->At_.reset(); // unknown, if one of these fails
     this->Reader_.Read(at + 1, target, [&](RecordedCommand&& row) {
       this->NoteForeign(row.foreignText, "command ", row.seq);
-      if (!this->Execute(std::move(row.command), "command ", row.seq, seconds)) {
+      if (!this->Execute(std::move(row.command), "command ", row.seq, wait)) {
         stopped = true;
         return false;
       }
@@ -201,7 +210,7 @@ bool Playback::Proceed(std::uint64_t target, double seconds) {
                 "no commands lead to command " + std::to_string(target) +
                     ", at which a step ends; they end at " + std::to_string(at));
   }
-  return at == target && this->HasOverviews(seconds);
+  return at == target && this->HasOverviews(wait);
 }
 
 // Steps are found by an index that has no checksums; the rows that it leads to have.
@@ -255,11 +264,11 @@ void Playback::Begin(std::uint64_t target) {
 }
 
 bool Playback::Execute(v1::Command command, const char* table, std::uint64_t seq, double seconds) {
+  const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
+  const FilesGuard guard(this->Files_->Look());
   if (!this->HasOverviews(seconds)) {
     return false;
   }
-  const Registry::Entry* entry = this->Interpreter_.Commands().Find(command.command_case());
-  const FilesGuard guard(this->Files_->Look());
   std::string rejected;
   if (entry && entry->effect != Effect::Change) {
     rejected =
@@ -267,13 +276,15 @@ bool Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
   } else {
     this->Files_->Map(command);
     this->Files_->FillIn(command);
-    if (!this->IsReady(command, table + std::to_string(seq), seconds)) {
+    if (!this->IsReady(command, seconds)) {
       return false;
     }
     if (command.has_remove_scene() && this->Guests_.makeRoom) {
       this->Guests_.makeRoom(command);
     }
-    const std::optional<CommandAhead> ahead = std::exchange(this->Ahead_, std::nullopt);
+    const bool isRead = this->Ahead_ && this->AheadOf_ == command.SerializeAsString();
+    const std::optional<CommandAhead> ahead =
+        isRead ? std::exchange(this->Ahead_, std::nullopt) : std::nullopt;
     rejected = (ahead ? ahead->execute() : this->Interpreter_.Execute(command)).error().message();
     if (!rejected.empty() && this->Guests_.makeRoom && this->Guests_.makeRoom(command)) {
       rejected = this->Interpreter_.Execute(command).error().message();
@@ -291,16 +302,21 @@ bool Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
   return true;
 }
 
-// Whether its files are read, as far as another thread reads them.
-bool Playback::IsReady(const v1::Command& command, const std::string& row, double seconds) {
-  if (!this->Guests_.readAhead) {
+// Whether its files are read, as far as another thread reads them. What was begun on another way is
+// taken over if it is the same; else at most one such reader goes on beside this one.
+bool Playback::IsReady(const v1::Command& command, double seconds) {
+  const CommandTraits* traits = CommandTraits::Find(command.command_case());
+  if (!this->Guests_.readAhead || !traits || !traits->ReadsFiles()) {
     return true;
   }
-  // A row of a snapshot has many commands, which come one after the other.
-  const std::string place = row + " " + std::to_string(this->Base_ ? this->BaseDone_ : 0);
-  if (!this->Ahead_ || this->AheadOf_ != place) {
+  std::string wanted = command.SerializeAsString();
+  if (!this->Ahead_ || this->AheadOf_ != wanted) {
+    if (this->Left_ && !this->Left_->isRead(seconds)) {
+      return false;
+    }
+    this->Left_ = std::exchange(this->Ahead_, std::nullopt);
     this->Ahead_ = this->Guests_.readAhead(command, this->Files_->Look());
-    this->AheadOf_ = place;
+    this->AheadOf_ = std::move(wanted);
   }
   return !this->Ahead_ || this->Ahead_->isRead(seconds);
 }
@@ -329,7 +345,7 @@ bool Playback::HasOverviews(double seconds) {
     if (std::chrono::duration<double>(Clock::now() - began).count() >= seconds) {
       return false;
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
   this->Building_.reset();
   return true;

@@ -36,12 +36,12 @@ struct PlaybackGuests {
   // Makes room for a command that removes a scene, or that was rejected; true: try it again.
   std::function<bool(const v1::Command&)> makeRoom;
   // Begins to read the files of a command, as it will be executed, in another thread, under a
-  // FilesGuard with `look`; none: it reads none. Continue() then returns until they are read.
+  // FilesGuard with `look`; none: it reads none. Continue() returns false until they are read.
   std::function<std::optional<CommandAhead>(const v1::Command&, const FilesGuard::Check& look)>
       readAhead;
 };
 
-// What a playback reads first of a recording: in any thread, and used in one thread at a time.
+// What a playback reads first of a recording. Any thread may read it; one at a time uses it.
 struct PlaybackSources {
   PlaybackSteps steps; // before the files, which are recorded before their commands
   std::unique_ptr<RecordedFiles> files;
@@ -62,11 +62,13 @@ struct PlaybackSources {
 // complete step, and in a gap.
 class Playback {
 public:
-  // Starts at the first step. Both arguments must outlive it. Packed files are unpacked, and
-  // removed by the destructor; the interpreter keeps what it has loaded, but terrains can read no
-  // more tiles. Files that are not packed must be unchanged, unless checkFiles is false.
+  // Starts at the first step. The reader and the interpreter must outlive it. Packed files are
+  // unpacked, and removed by the destructor; the interpreter keeps what it has loaded, but terrains
+  // can read no more tiles. Files that are not packed must be unchanged, unless checkFiles is
+  // false.
   Playback(RecordingReader& reader, Interpreter& interpreter, bool checkFiles = true);
-  // Aims at the first step; Continue() moves there. Until then Index() is 0.
+  // The same with what PlaybackSources::Read() has read by this reader. Aims at the first step;
+  // Continue() moves there. Until then Index() is 0.
   Playback(RecordingReader& reader, Interpreter& interpreter, PlaybackSources sources,
            PlaybackGuests guests);
 
@@ -111,7 +113,7 @@ private:
   // False: its files, or overviews of a terrain before it, are not there yet; nothing has happened.
   // Waits for them up to this time [s].
   bool Execute(v1::Command command, const char* table, std::uint64_t seq, double seconds);
-  bool IsReady(const v1::Command& command, const std::string& row, double seconds);
+  bool IsReady(const v1::Command& command, double seconds);
   void NoteForeign(bool foreign, const char* table, std::uint64_t seq);
   bool HasOverviews(double seconds); // waits for them up to this time
 
@@ -127,8 +129,9 @@ private:
   std::optional<double> Reached_s_;      // the time of the last command since Aim()
   std::optional<RecordedSnapshot> Base_; // that is being executed
   std::size_t BaseDone_ = 0;             // commands of it
-  std::string AheadOf_;                  // the row whose files are being read
+  std::string AheadOf_;                  // the command whose files are being read, serialized
   std::optional<CommandAhead> Ahead_;
+  std::optional<CommandAhead> Left_;    // of another way, that nobody needs any more
   std::optional<v1::Command> Building_; // asks for the overviews of a terrain
   std::set<std::string> Foreign_;       // rows that were noted
   std::vector<std::string> Notes_;

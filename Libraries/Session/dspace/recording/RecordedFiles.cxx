@@ -63,7 +63,8 @@ void RequireAbsent(const RecordingReader& reader, const RecordingAsset& asset) {
 }
 
 // The SHA-256 of a file of `size` bytes; empty if its size differs.
-std::string HashOf(const std::string& path, std::int64_t size, const std::string& object) {
+std::string HashOf(const std::string& path, std::int64_t size, const std::string& object,
+                   const CancelCheck& checkCancel) {
   std::error_code error;
   if (std::int64_t(fs::file_size(path, error)) != size && !error) {
     return {};
@@ -72,6 +73,9 @@ std::string HashOf(const std::string& path, std::int64_t size, const std::string
   std::string part(std::size_t(RecordingPartBytes), '\0');
   Sha256 sum;
   while (file.read(part.data(), std::streamsize(part.size())), file.gcount() > 0) {
+    if (checkCancel) {
+      checkCancel();
+    }
     sum.Add(part.data(), std::size_t(file.gcount()));
   }
   if (!file.eof() || file.bad()) {
@@ -215,7 +219,7 @@ void RecordedFiles::Check(const std::vector<RecordingAsset>& assets) const {
     if (!fs::is_regular_file(asset.path, error)) {
       throw Error(Error::Kind::NotFound, object, named + ", which it needs, is missing");
     }
-    if (HashOf(asset.path, asset.size, object) != asset.sha256) {
+    if (HashOf(asset.path, asset.size, object, this->CheckCancel_) != asset.sha256) {
       throw Error(Error::Kind::Corrupt, object,
                   named + " has changed since it was recorded; accepted: its " +
                       std::to_string(asset.size) + " bytes of SHA-256 " +

@@ -198,6 +198,11 @@ public:
             std::min(std::abs(placement.Step().y()),
                      std::abs(placement.Step().x()) * std::cos(latitude));
     }
+    // The bounds below count on what holds of spheres, and of ellipsoids up to here.
+    constexpr double Quarter = 85.0 * M_PI / 180.0;
+    if (!placement.Body().Spherical() && this->Distance(end) > Quarter * placement.Radius()) {
+      return Infinity;
+    }
     constexpr double MostBow = 64.0; // posts
     const PostLattice& lattice = this->Eye_.Ground_.pyramid->Lattice();
     if (!(bow < MostBow) ||

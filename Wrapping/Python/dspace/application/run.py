@@ -77,7 +77,8 @@ class Run(Playback):
             self._host.task(task, f"Reading {name}", -1.0, "Cancel")
             try:
                 while state == 0:
-                    self._host.breathe()
+                    if not self._host.breathe():
+                        player.Close()
                     state = player.WaitForOpen(SLICE)
             finally:
                 self._host.task(task, "", 0.0, "")

@@ -273,7 +273,7 @@ class SceneImages:
         arrays are good until it returns. Returns a LensPicture."""
         about = "simulated image"
         tile = integer(tile, "the tile", about)
-        if not 64 <= tile <= 8192:
+        if not 64 <= tile <= 4096:
             reject(about, "the tile", tile, "64 to 4096 pixels")
         if progress is not None and not callable(progress):
             reject(about, "progress", progress, "a function of one number", WrongType)

@@ -41,7 +41,8 @@ LensMap::LensMap(const SourceViews& views, const LensModel& lens, int x, int y, 
       const Eigen::Matrix2d across =
           jacobian * face.R_CF.leftCols<2>() * (views.Parallel() ? 1.0 : Distance * z);
       const double area = std::abs(across.determinant());
-      pixel.footprint = float(face.scale / std::sqrt(std::max(area, 1e-12)));
+      pixel.footprint =
+          float(face.scale / std::sqrt(std::max(area, views.Parallel() ? 1e-300 : 1e-12)));
     }
     last->push_back({std::uint32_t(at), float(pixel.place.x - lastView.x),
                      float(pixel.place.y - lastView.y), pixel.footprint});

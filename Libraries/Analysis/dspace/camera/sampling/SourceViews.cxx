@@ -181,7 +181,9 @@ void SourceViews::SetParallel(const CameraModel& model) {
     Reject(model.Label(), "no pixel of its image has a ray; accepted: finite scales and centre");
   }
   Face face;
-  face.scale = jacobian.leftCols<2>().cwiseAbs().maxCoeff();
+  const double finest = jacobian.leftCols<2>().cwiseAbs().maxCoeff();
+  const double coarsest = jacobian.leftCols<2>().diagonal().cwiseAbs().minCoeff();
+  face.scale = std::min(finest, MostStretch * coarsest);
   const Eigen::Vector2d low = first.origin.head<2>().cwiseMin(last.origin.head<2>());
   const Eigen::Vector2d high = first.origin.head<2>().cwiseMax(last.origin.head<2>());
   // With the picture's scale the grids are the same: no pixel is interpolated.

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <future>
-#include <thread>
 #include <utility>
 
+#include <dspace/commands/beforehand/ReadApart.h>
 #include <dspace/commands/beforehand/ReadFiles.h>
 #include <dspace/messages/ErrorReply.h>
 
@@ -28,14 +28,14 @@ std::unique_ptr<FilesAhead> FilesAhead::Begin(State& state, const v1::Command& c
   auto job = std::make_shared<Job>();
   job->given = command;
   job->named = command;
-  std::thread([job, before = NameBeforehand(state, job->named), look = std::move(look)] {
+  ReadApart([job, before = NameBeforehand(state, job->named), look = std::move(look)] {
     job->failed = Catch([&] {
       const FilesGuard guard(look);
       job->read = ReadFiles(job->named, before);
       return v1::Reply();
     });
     job->done.set_value();
-  }).detach();
+  });
   return std::unique_ptr<FilesAhead>(new FilesAhead(std::move(job)));
 }
 

@@ -283,12 +283,13 @@ struct PythonInterpreter::Internals {
     }));
     return done ? PyBytes_FromStringAndSize(reply.data(), Py_ssize_t(reply.size())) : nullptr;
   }
-  // breathe(): lets the windows draw and take events.
+  // breathe(): lets the windows draw and take events; False: they are closing.
   static PyObject* Breathe(PyObject*, PyObject*) {
     PyThreadState* const state = PyEval_SaveThread(); // events may run Python
+    ReleaseOtherContexts();                           // which may have drawn in one of its own
     QCoreApplication::processEvents(QEventLoop::AllEvents, Breath_ms);
     PyEval_RestoreThread(state);
-    Py_RETURN_NONE;
+    return PyBool_FromLong(The->host.isOpen());
   }
   static PyObject* Plot(PyObject*, PyObject* arguments) {
     PyObject* shown = nullptr;

@@ -43,6 +43,8 @@ struct PythonHost {
   std::function<void(const std::string& command)> readFiles;
   std::function<std::string(const std::string& command)> execute;
   std::function<void(const std::string&)> message;
+  // False once the windows are closing.
+  std::function<bool()> isOpen;
   // Something that goes on, with how much of it is done (0 to 1; < 0: not known) and what cancels
   // it
   // ("Cancel"; "": nothing does); then App._cancelled(id) is called. Empty text: it has ended.

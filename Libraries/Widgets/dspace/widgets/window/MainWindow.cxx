@@ -161,6 +161,7 @@ MainWindow::MainWindow(const QString& packages)
       this->Tasks_->Show(id, QString::fromStdString(text), done, QString::fromStdString(cancel));
     }
   };
+  host.isOpen = [this] { return !this->Closing_; };
   host.message = [this](const std::string& text) { this->Report(QString::fromStdString(text)); };
   this->Tasks_ = new TaskStrip(this);
   this->setAnimated(false); // docks that move would resize the views' pictures again and again
@@ -671,6 +672,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
   if (this->Interpreter_->IsBusy()) {
     PythonInterpreter::Interrupt();
   }
+  this->Closing_ = true;
   this->Files_->CancelAll();
   this->Shell_->End();
   event->accept();

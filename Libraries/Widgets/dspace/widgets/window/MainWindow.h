@@ -141,6 +141,7 @@ private:
   QDockWidget* ConsoleDock_ = nullptr;
   Shell* Shell_ = nullptr;
   FileCommands* Files_ = nullptr;
+  bool Closing_ = false;
   WindowPlugIn* Libraries_ = nullptr; // plug-ins in C++
   QString Errors_;                    // of Python, of the latest Run()
   std::map<Key, View_t> Views_;

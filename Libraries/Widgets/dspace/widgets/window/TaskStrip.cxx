@@ -1,7 +1,5 @@
-#include <dspace/widgets/window/TaskStrip.h>
-
-#include <algorithm>
 #include <cmath>
+#include <dspace/widgets/window/TaskStrip.h>
 
 #include <QHBoxLayout>
 #include <QLabel>
@@ -59,11 +57,6 @@ void TaskStrip::Show(long id, const QString& text, double done, const QString& c
 QString TaskStrip::Text(long id) const {
   const auto found = this->Rows_.find(id);
   return found == this->Rows_.end() ? QString() : found->second.text->text();
-}
-
-bool TaskStrip::Holds(const QString& text) const {
-  return std::any_of(this->Rows_.begin(), this->Rows_.end(),
-                     [&](const auto& entry) { return entry.second.text->text().contains(text); });
 }
 
 } // namespace dspace::widgets

@@ -25,8 +25,6 @@ public:
   int Count() const { return int(this->Rows_.size()); }
   // Of a task; "": there is no such task.
   QString Text(long id) const;
-  // Whether the text of a task contains this.
-  bool Holds(const QString& text) const;
 
 signals:
   void cancelled(long id);
