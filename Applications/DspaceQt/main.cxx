@@ -167,7 +167,7 @@ int Start(QApplication&) {
   // Without a window, because it was closed while files were opened, nothing would end the loop.
   const int code = window.isVisible() ? QApplication::exec() : 0;
   constexpr double Patience = 2.0; // [s]
-  if (!dspace::session::WaitForReaders(Patience)) {
+  if (!dspace::session::ReadApart::WaitForAll(Patience)) {
     std::cout << std::flush;
     std::_Exit(code); // what such a thread uses must not be cleaned up
   }

@@ -1,9 +1,6 @@
 #include "vtkDspacePlayer.h"
 
-#include <algorithm>
 #include <atomic>
-#include <chrono>
-#include <future>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -25,32 +22,31 @@ vtkStandardNewMacro(vtkDspacePlayer);
 
 namespace {
 
-// A recording that another thread reads; it keeps what it uses.
-struct Opening {
-  std::string path;
-  bool check = true;
-  // Also asked when the open recording unpacks more.
-  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
+// What the reading thread hands over.
+struct Opened {
   std::unique_ptr<dspace::session::RecordingReader> reader;
   dspace::session::PlaybackSources sources; // goes before the reader
-  dspace::v1::Reply failed;                 // where it has an error
-  std::promise<void> done;
-  std::future<void> isDone = done.get_future();
+};
 
-  void Read() {
-    this->failed = dspace::session::Catch([this] {
-      const auto checkCancel = [stop = this->cancelled, object = "recording '" + this->path + "'"] {
-        if (*stop) {
-          throw dspace::Error(dspace::Error::Kind::Resource, object, "opening it was cancelled");
-        }
-      };
-      this->reader = std::make_unique<dspace::session::RecordingReader>(this->path);
-      this->sources =
-          dspace::session::PlaybackSources::Read(*this->reader, this->check, checkCancel);
-      return dspace::v1::Reply();
-    });
-    this->done.set_value();
-  }
+// A recording that another thread reads.
+struct Opening {
+  // Also asked when the open recording unpacks more.
+  std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
+  std::shared_ptr<Opened> result = std::make_shared<Opened>();
+  dspace::session::ReadApart thread;
+
+  Opening(const std::string& path, bool check)
+      : thread([path, check, stop = this->cancelled, into = this->result] {
+          const auto checkCancel = [stop, object = "recording '" + path + "'"] {
+            if (*stop) {
+              throw dspace::Error(dspace::Error::Kind::Resource, object,
+                                  "opening it was cancelled");
+            }
+          };
+          into->reader = std::make_unique<dspace::session::RecordingReader>(path);
+          into->sources = dspace::session::PlaybackSources::Read(*into->reader, check, checkCancel);
+          return dspace::v1::Reply();
+        }) {}
 };
 
 } // namespace
@@ -60,7 +56,7 @@ struct vtkDspacePlayer::Internals {
   vtkSmartPointer<vtkDspaceSession> session = vtkSmartPointer<vtkDspaceSession>::New();
   dspace::session::ViewerViews views;
   dspace::session::ViewportCopies copies;
-  std::shared_ptr<Opening> opening; // null: nothing is being opened
+  std::unique_ptr<Opening> opening; // null: nothing is being opened
   dspace::v1::Reply opened;
   std::unique_ptr<dspace::session::RecordingReader> reader;
   std::optional<dspace::session::Playback> playback; // goes before the reader
@@ -151,16 +147,10 @@ std::string vtkDspacePlayer::Open(const std::string& path, bool check) {
 
 void vtkDspacePlayer::BeginOpen(const std::string& path, bool check) {
   this->Close();
-  this->Impl->opening = std::make_shared<Opening>();
-  this->Impl->opening->path = path;
-  this->Impl->opening->check = check;
-  this->Impl->opened = dspace::session::Catch([this] {
-    dspace::session::ReadApart([opening = this->Impl->opening] { opening->Read(); });
+  this->Impl->opened = dspace::session::Catch([&] {
+    this->Impl->opening = std::make_unique<Opening>(path, check);
     return dspace::v1::Reply();
   });
-  if (this->Impl->opened.has_error()) {
-    this->Impl->opening.reset();
-  }
 }
 
 int vtkDspacePlayer::WaitForOpen(double seconds) {
@@ -168,20 +158,18 @@ int vtkDspacePlayer::WaitForOpen(double seconds) {
   if (!impl.opening) {
     return impl.playback ? 1 : -1;
   }
-  constexpr double Longest = 1e6; // [s], which the clock can hold
-  const std::chrono::duration<double> wait(std::clamp(seconds, 0.0, Longest));
-  if (!impl.playback && impl.opening->isDone.wait_for(wait) != std::future_status::ready) {
+  if (!impl.playback && !impl.opening->thread.IsDone(seconds)) {
     return 0;
   }
   bool there = false;
-  impl.opened = impl.opening->failed;
+  impl.opened = impl.opening->thread.Reply();
   if (!impl.opened.has_error()) {
     impl.opened = dspace::session::Catch([&] {
       if (!impl.playback) {
         impl.copies.Follow(impl.Interpreter());
-        impl.reader = std::move(impl.opening->reader);
-        impl.playback.emplace(*impl.reader, impl.Interpreter(), std::move(impl.opening->sources),
-                              impl.Guests());
+        impl.reader = std::move(impl.opening->result->reader);
+        impl.playback.emplace(*impl.reader, impl.Interpreter(),
+                              std::move(impl.opening->result->sources), impl.Guests());
       }
       there = impl.playback->Continue(seconds);
       return there ? impl.WithNotes() : dspace::v1::Reply();

@@ -302,8 +302,9 @@ bool Playback::Execute(v1::Command command, const char* table, std::uint64_t seq
   return true;
 }
 
-// Whether its files are read, as far as another thread reads them. What was begun on another way is
-// taken over if it is the same; else at most one such reader goes on beside this one.
+// Whether its files are read, as far as another thread reads them. A read that an earlier aim began
+// is used if it is for the same command. Else it may finish beside the new one, but a third one
+// waits.
 bool Playback::IsReady(const v1::Command& command, double seconds) {
   const CommandTraits* traits = CommandTraits::Find(command.command_case());
   if (!this->Guests_.readAhead || !traits || !traits->ReadsFiles()) {

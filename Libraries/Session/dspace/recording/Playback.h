@@ -84,11 +84,11 @@ public:
   // moved.
   std::int64_t Step(std::int64_t n);
   // A movement in slices, so that the caller's thread is not held: Aim() takes a note of the step
-  // to move to, and each Continue() executes commands for about this time [s], at least one
-  // command unless its files are being read (PlaybackGuests::readAhead) or overviews built. True:
-  // there is nothing left to do. Meanwhile Index() and Time() are those of the step before, and the
-  // state is between the two. A new aim takes over at once; Seek() and Step() complete theirs.
-  // InvalidArgument: there is no such step.
+  // to move to, and each Continue() executes commands for about this time [s]: at least one, unless
+  // its files are being read (PlaybackGuests::readAhead) or overviews are being built. It returns
+  // true when there is nothing left to do. Until then Index() and Time() return those of the
+  // previous step, and the state is between the two. A new aim takes over at once; Seek() and
+  // Step() complete theirs. InvalidArgument: there is no such step.
   void Aim(std::size_t index);
   bool Continue(double seconds);
   bool IsMoving() const { return this->Aim_.has_value(); }
@@ -131,7 +131,7 @@ private:
   std::size_t BaseDone_ = 0;             // commands of it
   std::string AheadOf_;                  // the command whose files are being read, serialized
   std::optional<CommandAhead> Ahead_;
-  std::optional<CommandAhead> Left_;    // of another way, that nobody needs any more
+  std::optional<CommandAhead> Left_;    // of an earlier aim, no longer needed
   std::optional<v1::Command> Building_; // asks for the overviews of a terrain
   std::set<std::string> Foreign_;       // rows that were noted
   std::vector<std::string> Notes_;

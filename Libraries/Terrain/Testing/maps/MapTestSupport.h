@@ -66,6 +66,16 @@ inline std::shared_ptr<StreamedTerrain> OnBody(const std::string& path) {
   return StreamedTerrain::Open(path, options);
 }
 
+// 200 x 160 pixels of 243 m with hills, on the Moon's sphere from 30 degrees east and 62 degrees
+// north on.
+inline std::shared_ptr<StreamedTerrain> HillyMoon(const TemporaryFolder& folder) {
+  const double metres = 1737400.0 * Degree;
+  return OnBody(WriteDegrees(folder, "hills.tif", 1737400.0, 200, 160, 30.0, 62.0, 0.008,
+                             [&](double lon, double lat) {
+                               return Hills(lon * metres * 0.5, lat * metres, 900.0, 60000.0, 0.05);
+                             }));
+}
+
 // The bands of a GeoTIFF, row by row.
 inline std::vector<std::vector<float>> BandsOf(const std::string& path) {
   GDALAllRegister();

@@ -65,11 +65,7 @@ TEST(Viewshed, APlaneAgreesWithRaysInEveryCell) {
 
 TEST(Viewshed, ABodyAgreesWithRaysInEveryCell) {
   const TemporaryFolder folder;
-  const double metres = 1737400.0 * Degree;
-  const auto terrain = OnBody(WriteDegrees(
-      folder, "hills.tif", 1737400.0, 200, 160, 30.0, 62.0, 0.008, [&](double lon, double lat) {
-        return Hills(lon * metres * 0.5, lat * metres, 900.0, 60000.0, 0.05);
-      }));
+  const auto terrain = HillyMoon(folder);
   const MapGround ground = MapGroundOf(*terrain);
   MapCells cells = FindCells(ground, std::nullopt, 0.0);
   cells.every *= 8; // to 48 km

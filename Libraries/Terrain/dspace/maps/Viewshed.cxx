@@ -6,6 +6,7 @@
 
 #include <dspace/Checks.h>
 #include <dspace/horizon/HeldPosts.h>
+#include <dspace/maps/ViewshedEye.h>
 
 namespace dspace {
 namespace {

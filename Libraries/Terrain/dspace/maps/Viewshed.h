@@ -12,11 +12,16 @@
 #include <dspace/maps/MapCells.h>
 #include <dspace/maps/MapGround.h>
 #include <dspace/maps/MapWork.h>
-#include <dspace/maps/ViewshedEye.h>
 
 namespace dspace {
 
 class HeldPosts;
+
+struct ViewshedObserver {
+  Eigen::Vector2d post =
+      Eigen::Vector2d::Zero(); // level-0 posts of the ground; may lie between them
+  double height = 0.0;         // [m] above the ground
+};
 
 struct ViewshedOptions {
   enum class Quantity {

@@ -11,16 +11,11 @@
 #include <dspace/horizon/HorizonKernel.h>
 #include <dspace/horizon/HorizonPath.h>
 #include <dspace/maps/MapGround.h>
+#include <dspace/maps/Viewshed.h>
 
 namespace dspace {
 
 class HeldPosts;
-
-struct ViewshedObserver {
-  Eigen::Vector2d post =
-      Eigen::Vector2d::Zero(); // level-0 posts of the ground; may lie between them
-  double height = 0.0;         // [m] above the ground
-};
 
 // The line of sight to a target is followed over the triangles of level 0 at every edge that it
 // crosses, in double precision; a body's curvature counts. The line is divided into stretches. The

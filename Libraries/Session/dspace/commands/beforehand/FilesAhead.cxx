@@ -1,23 +1,19 @@
 #include <dspace/commands/beforehand/FilesAhead.h>
 
-#include <algorithm>
-#include <chrono>
-#include <future>
 #include <utility>
 
 #include <dspace/commands/beforehand/ReadApart.h>
 #include <dspace/commands/beforehand/ReadFiles.h>
-#include <dspace/messages/ErrorReply.h>
 
 namespace dspace::session {
 
+// What the thread reads outlives it in `read`, which it fills before it is done.
 struct FilesAhead::Job {
   v1::Command given;
   v1::Command named; // NameBeforehand()
-  std::shared_ptr<ReadBeforehand> read;
-  v1::Reply failed;
-  std::promise<void> done;
-  std::future<void> isDone = done.get_future();
+  std::shared_ptr<std::shared_ptr<ReadBeforehand>> read =
+      std::make_shared<std::shared_ptr<ReadBeforehand>>();
+  std::unique_ptr<ReadApart> thread;
 };
 
 std::unique_ptr<FilesAhead> FilesAhead::Begin(State& state, const v1::Command& command,
@@ -25,28 +21,28 @@ std::unique_ptr<FilesAhead> FilesAhead::Begin(State& state, const v1::Command& c
   if (!ReadsFiles(command) || HasFiles(state, command)) {
     return nullptr;
   }
-  auto job = std::make_shared<Job>();
+  auto job = std::make_unique<Job>();
   job->given = command;
   job->named = command;
-  ReadApart([job, before = NameBeforehand(state, job->named), look = std::move(look)] {
-    job->failed = Catch([&] {
-      const FilesGuard guard(look);
-      job->read = ReadFiles(job->named, before);
-      return v1::Reply();
-    });
-    job->done.set_value();
-  });
+  const StateBeforehand before = NameBeforehand(state, job->named);
+  job->thread = std::make_unique<ReadApart>(
+      [named = job->named, before, look = std::move(look), into = job->read] {
+        const FilesGuard guard(look);
+        *into = ReadFiles(named, before);
+        return v1::Reply();
+      });
   return std::unique_ptr<FilesAhead>(new FilesAhead(std::move(job)));
 }
 
+FilesAhead::FilesAhead(std::unique_ptr<Job> job) : Job_(std::move(job)) {}
+FilesAhead::~FilesAhead() = default;
+
 bool FilesAhead::IsRead(double seconds) const {
-  constexpr double Longest = 1e6; // [s], which the clock can hold
-  return this->Job_->isDone.wait_for(std::chrono::duration<double>(std::min(seconds, Longest))) ==
-         std::future_status::ready;
+  return this->Job_->thread->IsDone(seconds);
 }
 
 const v1::Reply& FilesAhead::Failed() const {
-  return this->Job_->failed;
+  return this->Job_->thread->Reply();
 }
 
 const v1::Command& FilesAhead::ToExecute(const State& state) const {
@@ -58,7 +54,7 @@ const v1::Command& FilesAhead::ToExecute(const State& state) const {
 }
 
 ReadBeforehand* FilesAhead::Files() const {
-  return this->Job_->read.get();
+  return this->Job_->read->get();
 }
 
 } // namespace dspace::session

@@ -1,18 +1,34 @@
-// Threads that read files while nobody waits for their end.
+// A thread that reads files.
 #ifndef DSPACE_SESSION_READ_APART_H
 #define DSPACE_SESSION_READ_APART_H
 
 #include <functional>
+#include <memory>
+
+#include <dspace/proto/commands.pb.h>
 
 namespace dspace::session {
 
-// Runs `read` in a thread of its own, which owns what it uses and throws nothing. Throws
-// Error(Resource) if there can be no more threads.
-void ReadApart(std::function<void()> read);
+// The thread owns what `read` captures: this object may be destroyed before the thread ends.
+class ReadApart {
+public:
+  // Starts `read`; an exception becomes the error of the reply, as Catch() has it. Throws
+  // Error(Resource) if no thread can be started.
+  explicit ReadApart(std::function<v1::Reply()> read);
 
-// Whether all of these threads have ended; waits for it up to this time [s]. A program asks before
-// it ends: GDAL and PROJ may be in use until then.
-bool WaitForReaders(double seconds);
+  // Waits for the end up to this time [s].
+  bool IsDone(double seconds) const;
+  // Once IsDone().
+  const v1::Reply& Reply() const;
+
+  // Whether all of these threads of the process have ended; waits up to this time [s]. A program
+  // asks before it ends, because GDAL and PROJ may be in use until then.
+  static bool WaitForAll(double seconds);
+
+private:
+  struct Work;
+  std::shared_ptr<Work> Work_;
+};
 
 } // namespace dspace::session
 

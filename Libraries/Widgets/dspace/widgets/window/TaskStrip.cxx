@@ -1,5 +1,7 @@
-#include <cmath>
 #include <dspace/widgets/window/TaskStrip.h>
+
+#include <algorithm>
+#include <cmath>
 
 #include <QHBoxLayout>
 #include <QLabel>
