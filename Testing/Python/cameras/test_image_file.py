@@ -192,3 +192,30 @@ def test_ctrl_c_leaves_what_was_there(tmp_path):
     _, errors = process.communicate(timeout=60)
     assert process.returncode != 0 and "KeyboardInterrupt" in errors
     assert path.read_bytes() == b"earlier" and [each.name for each in tmp_path.iterdir()] == ["large.png"]
+
+
+FULL = """
+import resource, signal, sys
+import numpy as np
+import dspace
+from dspace.cameras.image_file import write_image
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[3]), resource.RLIM_INFINITY))
+try:
+    write_image(sys.argv[1], np.random.default_rng(1).integers(0, 200, (200, 300, 3)).astype(sys.argv[2]))
+except dspace.Io as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("room", [0, 4096, 100_000])
+@pytest.mark.parametrize("name, kind", [("a.png", "uint8"), ("a.tif", "uint16"), ("a.exr", "float32")])
+def test_a_file_that_cannot_grow_leaves_the_one_before(tmp_path, name, kind, room):
+    """The system writes no more than `room` bytes, as on a full disk."""
+    path = tmp_path / name
+    before = np.arange(12, dtype=kind).reshape(3, 4)
+    write_image(path, before)
+    done = subprocess.run([sys.executable, "-W", "ignore", "-c", FULL, str(path), kind, str(room)], capture_output=True, text=True)
+    assert "cannot be written" in done.stdout, done.stdout + done.stderr
+    np.testing.assert_array_equal(read_image(path), before)
+    assert [each.name for each in tmp_path.iterdir()] == [name]

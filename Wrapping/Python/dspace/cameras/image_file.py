@@ -98,7 +98,21 @@ class ImageFile:
         out, self._out = self._out, None
         if not out.close():
             raise Io(f"{self._about}: it cannot be written: {out.geterror()}", self._about)
+        self._require_complete()
         self._file.commit()
+
+    def _require_complete(self):
+        """Reads the file to its end: on a full disk the libraries cut a PNG or an EXR and report no error."""
+        image = self._oiio.ImageInput.open(self._file.temporary)
+        whole = image is not None
+        if whole:
+            spec, (width, height) = image.spec(), self._size
+            whole = (spec.width, spec.height, spec.nchannels) == (width, height, self._channels) and all(
+                image.read_scanlines(first, min(first + ROWS, height), 0, 0, self._channels, spec.format) is not None
+                for first in range(0, height, ROWS))
+            image.close()
+        if not whole:
+            raise Io(f"{self._about}: it cannot be written: it is incomplete; accepted: a folder with free space", self._about)
 
     def close(self):
         """Removes what was written, unless it was committed."""
