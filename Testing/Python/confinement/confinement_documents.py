@@ -448,3 +448,48 @@ def shapes_that_refer(m):
     for kind in ("link", "url"):
         m.add(f"geojson-crs-{kind}", "a.json", LINE.replace('"features"', f'"crs":{{"type":"{kind}","properties":{{"href":"{m.url}/'
               f'geojson-crs-{kind}","url":"{m.url}/geojson-crs-{kind}","type":"ogcwkt"}}}},"features"'), shapes=True)
+
+
+# --- Coordinate systems that name files -------------------------------------------------------------
+
+@row
+def coordinate_systems(m):
+    """A grid of shifts or a file of definitions, which PROJ opens while GDAL opens the document."""
+    def proj(name):
+        return f"+proj=longlat +ellps=bessel +nadgrids={m.target(name)} +no_defs"
+
+    def grids(name):
+        return ('GEOGCS["a",DATUM["b",SPHEROID["c",6377397.155,299.1528128],EXTENSION["PROJ4_GRIDS","' + m.target(name)
+                + '"]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]]')
+
+    def quoted(text):
+        return text.replace("&", "&amp;").replace('"', "&quot;")
+
+    own = source("own.tif", attributes=' relativeToVRT="1"')
+    for name, text in (("proj", proj), ("wkt", grids), ("init", lambda name: f"+init={m.target(name, b'<1> +proj=longlat <>')}:1")):
+        mosaic = f"crs-mosaic-{name}"
+        m.add(mosaic, "a.vrt", vrt(f"<SRS>{quoted(text(mosaic))}</SRS>" + own, band="").replace(
+            own, f'<VRTRasterBand dataType="Byte" band="1">{own}</VRTRasterBand>'), own__tif=m.tiff())
+        entities = f"crs-mosaic-entities-{name}"
+        m.add(entities, "a.vrt", vrt("<SRS>" + "".join(f"&#{ord(c)};" for c in text(entities)) + "</SRS>" + own, band="").replace(
+            own, f'<VRTRasterBand dataType="Byte" band="1">{own}</VRTRasterBand>'), own__tif=m.tiff())
+        points = f"crs-points-{name}"
+        m.add(points, "a.vrt", vrt(f'<GCPList Projection="{quoted(text(points))}"><GCP Id="1" Pixel="0" Line="0" X="0" Y="0"/>'
+                                   '<GCP Id="2" Pixel="8" Line="0" X="8" Y="0"/><GCP Id="3" Pixel="0" Line="8" X="0" Y="8"/>'
+                                   "</GCPList>" + own, band="").replace(
+            own, f'<VRTRasterBand dataType="Byte" band="1">{own}</VRTRasterBand>'), own__tif=m.tiff())
+        beside = f"crs-beside-{name}"
+        m.add(beside, "a.asc", GRID, a__asc__aux__xml=f"<PAMDataset><SRS>{quoted(text(beside))}</SRS></PAMDataset>")
+        shapes = f"crs-geojson-{name}"
+        crs = text(shapes).replace("\\", "\\\\").replace('"', '\\"')
+        m.add(shapes, "a.json", LINE.replace('"features"', f'"crs":{{"type":"name","properties":{{"name":"{crs}"}}}},"features"'),
+              shapes=True)
+        escaped = f"crs-geojson-escaped-{name}"
+        crs = "".join(f"\\u{ord(c):04x}" for c in text(escaped))
+        m.add(escaped, "a.json", LINE.replace(
+            '"features"', f'"crs":{{"type":"name","properties":{{"name":"{crs}"}}}},"features"'), shapes=True)
+    m.add("crs-prj", "a.asc", GRID, a__prj=grids("crs-prj"))
+    m.add("crs-prj-upper", "a.asc", GRID, a__PRJ=grids("crs-prj-upper"))
+    m.add("crs-envi", "a.dat", bytes(64), a__hdr=f"ENVI\nsamples = 8\nlines = 8\nbands = 1\ndata type = 1\ninterleave = bsq\n"
+          "map info = {Geographic Lat/Lon, 1, 1, 0, 8, 1, 1, WGS-84}\n"
+          f"coordinate system string = {{{grids('crs-envi')}}}\n")

@@ -1,12 +1,12 @@
 #include <dspace/messages/Confinement.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include <google/protobuf/descriptor.h>
 
 #include <dspace/Error.h>
+#include <dspace/crs/CrsFiles.h>
 #include <dspace/messages/CommandTexts.h>
 #include <dspace/messages/CommandTraits.h>
 
@@ -23,27 +23,6 @@ bool IsPath(TextKind kind) {
 bool Within(const fs::path& path, const fs::path& root) {
   const auto [end, at] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
   return end == root.end();
-}
-
-// Whether a coordinate system names a file, which PROJ would open: by itself, as a grid of shifts
-// or a file of parameters in WKT or PROJ, as PROJ within WKT 1, or as a definition in a file.
-bool NamesFile(const std::string& crs) {
-  std::string text;
-  for (const char c : crs) {
-    if (!std::isspace(static_cast<unsigned char>(c)) && c != '"' && c != '\'') {
-      text += char(std::tolower(static_cast<unsigned char>(c)));
-    }
-  }
-  for (const char* word : {"grids=", "file=", "model=", "init=", "parameterfile", "extension[",
-                           "extension(", "dict:", "/vsi", "://"}) {
-    if (text.find(word) != std::string::npos) {
-      return true;
-    }
-  }
-  const bool proj = text.find("+") == 0 || text.find("proj=") != std::string::npos;
-  std::error_code error;
-  return text.empty() || std::string("/.@~\\").find(text[0]) != std::string::npos ||
-         (proj && text.find('/') != std::string::npos) || fs::exists(crs, error);
 }
 
 [[noreturn]] void RejectPath(const std::string& value, const std::string& field,
@@ -91,7 +70,7 @@ void Confinement::Apply(v1::Command& command) const {
         if (IsPath(kind)) {
           return this->Check(text, field.full_name(), kind == TextKind::ReadFile);
         }
-        if (NamesFile(text)) {
+        if (CrsNamesFile(text)) {
           RejectPath(
               text, field.full_name(),
               "names a file; accepted: AUTHORITY:CODE, WKT and PROJ without grids, parameter "

@@ -10,17 +10,22 @@
 
 #include <cpl_error.h>
 #include <cpl_string.h>
+#include <ogr_spatialref.h>
+#include <ogrsf_frmts.h>
 
 #include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
 
+#include <dspace/crs/CrsFiles.h>
 #include <dspace/raster/BlockBudget.h>
+#include <dspace/raster/InnerNames.h>
 #include <dspace/raster/MosaicCount.h>
 #include <dspace/raster/MosaicSources.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OpeningProbe.h>
 #include <dspace/raster/SelfContainedDrivers.h>
+#include <dspace/raster/TiffBlocks.h>
 #include <dspace/raster/UnderlyingFile.h>
 
 namespace dspace {
@@ -211,6 +216,24 @@ void CheckPixels(GDALDataset& dataset, const std::string& path) {
   }
 }
 
+void CheckCrsOf(GDALDataset& dataset, const std::string& path) {
+  std::vector<const OGRSpatialReference*> all = {dataset.GetSpatialRef(),
+                                                 dataset.GetGCPSpatialRef()};
+  for (int i = 0; i < dataset.GetLayerCount(); ++i) {
+    OGRLayer* layer = dataset.GetLayer(i);
+    OGRFeatureDefn* fields = layer ? layer->GetLayerDefn() : nullptr;
+    for (int k = 0; fields && k < fields->GetGeomFieldCount(); ++k) {
+      all.push_back(fields->GetGeomFieldDefn(k)->GetSpatialRef());
+    }
+  }
+  for (const OGRSpatialReference* srs : all) {
+    if (srs && CrsNamesFile(*srs)) {
+      Reject(path, "its coordinate system names a file; accepted here: coordinate systems without "
+                   "grids, parameter files and init");
+    }
+  }
+}
+
 void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& opening) {
   CheckPixels(dataset, path);
   const char* overviews = dataset.GetMetadataItem("OVERVIEW_FILE", "OVERVIEWS");
@@ -220,6 +243,7 @@ void CheckOpened(GDALDataset& dataset, const std::string& path, const Opening& o
                "' as OVERVIEW_FILE; accepted here: overviews within the file, or beside it in "
                "a file of its name and .ovr");
   }
+  CheckCrsOf(dataset, path);
   const CPLStringList files(dataset.GetFileList()); // GDAL looks for overviews and masks, too
   opening.Check();
   for (int i = 0; i < files.size(); ++i) {
@@ -240,6 +264,9 @@ DatasetPointer OpenGuarded(const std::string& name, unsigned flags, const char* 
   }
   const std::string path = RequireName(name);
   CheckLinksBeside(path, opening);
+  if (!IsRemote(path)) {
+    CheckInnerNames(path);
+  }
   const char* const mosaic[] = {"VRT", nullptr};
   const char* const* allowed = drivers ? drivers : SelfContainedDrivers();
   if (!drivers && (flags & GDAL_OF_RASTER) && AreMosaicsAccepted() && IsMosaic(path)) {
@@ -336,6 +363,7 @@ unsigned FlagsOf(DatasetKind kind) {
 
 DatasetPointer OpenDataset(const std::string& path, DatasetKind kind, const char* const* drivers) {
   RegisterGate();
+  const WholeStrips whole;
   if (FilesGuard::IsActive()) {
     return OpenGuarded(path, FlagsOf(kind), drivers, nullptr);
   }

@@ -8,6 +8,8 @@
 #include <cpl_vsi.h>
 #include <gdal_priv.h>
 
+#include <dspace/raster/TiffBlocks.h>
+
 namespace dspace {
 
 void DeflateCheck::Closed::operator()(void* file) const {
@@ -17,8 +19,7 @@ void DeflateCheck::Closed::operator()(void* file) const {
 DeflateCheck::DeflateCheck(GDALDataset& dataset, GDALRasterBand& band) {
   const char* compression = dataset.GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE");
   const char* interleaved = dataset.GetMetadataItem("INTERLEAVE", "IMAGE_STRUCTURE");
-  if (!dataset.GetDriver() || !EQUAL(dataset.GetDriver()->GetDescription(), "GTiff") ||
-      !compression || !EQUAL(compression, "DEFLATE")) {
+  if (TiffBlocksOf(band) != TiffBlocks::Known || !compression || !EQUAL(compression, "DEFLATE")) {
     return;
   }
   band.GetBlockSize(&this->Width_, &this->Height_);
@@ -32,19 +33,13 @@ DeflateCheck::DeflateCheck(GDALDataset& dataset, GDALRasterBand& band) {
 DeflateCheck::~DeflateCheck() = default;
 
 bool DeflateCheck::IsIntact(GDALRasterBand& band, int column, int row) {
-  const auto item = [&](const char* what) -> vsi_l_offset {
-    const char* text =
-        band.GetMetadataItem(CPLSPrintf("BLOCK_%s_%d_%d", what, column, row), "TIFF");
-    return text ? CPLScanUIntBig(text, 24) : 0;
-  };
-  const vsi_l_offset offset = item("OFFSET");
-  const vsi_l_offset size = item("SIZE");
-  if (offset == 0 || size < 6 || size > 2 * this->Bytes_ + 4096) {
+  const TiffBlock place = FindTiffBlock(band, column, row);
+  if (place.offset == 0 || place.size < 6 || place.size > 2 * this->Bytes_ + 4096) {
     return true; // left out, or none that libtiff would take
   }
   auto* file = static_cast<VSILFILE*>(this->File_.get());
-  std::vector<unsigned char> stream(static_cast<std::size_t>(size));
-  if (VSIFSeekL(file, offset, SEEK_SET) != 0 ||
+  std::vector<unsigned char> stream(static_cast<std::size_t>(place.size));
+  if (VSIFSeekL(file, place.offset, SEEK_SET) != 0 ||
       VSIFReadL(stream.data(), 1, stream.size(), file) != stream.size()) {
     return false;
   }

@@ -9,6 +9,7 @@
 #include <dspace/raster/DatasetFiles.h>
 
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/TiffBlocks.h>
 
 namespace dspace {
 
@@ -26,16 +27,14 @@ Error::Kind KindOfAnswer(const std::string& message) {
   return has("not recognized") ? Error::Kind::Unsupported : Error::Kind::Corrupt;
 }
 
-bool IsTiff(GDALRasterBand& band) {
-  GDALDataset* dataset = band.GetDataset();
-  return dataset && dataset->GetDriver() && EQUAL(dataset->GetDriver()->GetDescription(), "GTiff");
-}
-
 // GDAL_DATA_COVERAGE_STATUS_... of pixels. GDAL itself also takes blocks of a TIFF for empty that
 // are there, where the file system keeps their zeros as a hole of the file: those are zeros.
-int Coverage(GDALRasterBand& band, bool tiff, const RasterWindow& w, int until = 0) {
-  if (!tiff) {
+int Coverage(GDALRasterBand& band, TiffBlocks tiff, const RasterWindow& w, int until = 0) {
+  if (tiff == TiffBlocks::NoTiff) {
     return band.GetDataCoverageStatus(w.column, w.row, w.width, w.height, until, nullptr);
+  }
+  if (tiff == TiffBlocks::Unknown) {
+    return GDAL_DATA_COVERAGE_STATUS_DATA;
   }
   int blockX = 1;
   int blockY = 1;
@@ -43,9 +42,8 @@ int Coverage(GDALRasterBand& band, bool tiff, const RasterWindow& w, int until =
   int status = 0;
   for (int y = w.row / blockY; y <= (w.row + w.height - 1) / blockY; ++y) {
     for (int x = w.column / blockX; x <= (w.column + w.width - 1) / blockX; ++x) {
-      const std::string item = "BLOCK_OFFSET_" + std::to_string(x) + "_" + std::to_string(y);
-      status |= band.GetMetadataItem(item.c_str(), "TIFF") ? GDAL_DATA_COVERAGE_STATUS_DATA
-                                                           : GDAL_DATA_COVERAGE_STATUS_EMPTY;
+      status |= FindTiffBlock(band, x, y).offset != 0 ? GDAL_DATA_COVERAGE_STATUS_DATA
+                                                      : GDAL_DATA_COVERAGE_STATUS_EMPTY;
       if (status & until) {
         return status;
       }
@@ -57,7 +55,7 @@ int Coverage(GDALRasterBand& band, bool tiff, const RasterWindow& w, int until =
 // Columns [left, right) and rows [top, bottom) of the mask.
 struct Gaps {
   GDALRasterBand& band;
-  const bool tiff;
+  const TiffBlocks tiff;
   const RasterWindow& part;
   int columns, rows, stride;
   std::uint8_t* mask;
@@ -177,12 +175,12 @@ bool GivesZerosForGaps(GDALRasterBand& band) {
 
 bool LeavesBlocksOut(GDALRasterBand& band, const RasterWindow& part) {
   constexpr int Empty = GDAL_DATA_COVERAGE_STATUS_EMPTY;
-  return (Coverage(band, IsTiff(band), part, Empty) & Empty) != 0;
+  return (Coverage(band, TiffBlocksOf(band), part, Empty) & Empty) != 0;
 }
 
 void MaskGaps(GDALRasterBand& band, const RasterWindow& part, int columns, int rows, int stride,
               std::uint8_t* mask) {
-  Gaps{band, IsTiff(band), part, columns, rows, stride, mask}.Mark(0, 0, columns, rows);
+  Gaps{band, TiffBlocksOf(band), part, columns, rows, stride, mask}.Mark(0, 0, columns, rows);
 }
 
 } // namespace dspace
