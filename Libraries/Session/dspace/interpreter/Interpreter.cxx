@@ -126,7 +126,7 @@ void Interpreter::Run(v1::Command& command, v1::Reply& reply) {
   if (this->Depth_ == 1) {
     this->State_.frameEvents.MoveTo(reply); // before listeners are notified: they forward the reply
   }
-  if (entry->effect == Effect::Change) {
+  if (entry->effect == Effect::Change && !this->Listeners_.empty()) {
     MakeTextUtf8(command); // listeners send and record both
     MakeTextUtf8(reply);
     this->NotifyListeners(command, reply);

@@ -315,14 +315,19 @@ void ElevationSource::ReadPixels(const RasterWindow& part, int columns, int rows
       band.RasterIO(GF_Read, part.column, part.row, part.width, part.height, values, columns, rows,
                     GDT_Float64, sizeof(double), line * GSpacing(sizeof(double)), nullptr);
   // The mask knows no-data, alpha and the special pixels of each format.
-  impl.suspect =
-      read != CE_None || errors.Failed() ||
-      band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height, mask,
-                                   columns, rows, GDT_Byte, 1, line, nullptr) != CE_None ||
-      errors.Failed();
+  impl.suspect = read != CE_None || errors.Failed();
   if (!impl.suspect && impl.gaps) {
+    // All are valid but those of gaps. GDAL's own mask takes a block of memory for each of them.
+    for (int r = 0; r < rows; ++r) {
+      std::fill_n(mask + std::size_t(r) * stride, columns, std::uint8_t(255));
+    }
     MaskGaps(band, part, columns, rows, stride, mask);
     impl.suspect = errors.Failed();
+  } else if (!impl.suspect) {
+    impl.suspect = band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width,
+                                                part.height, mask, columns, rows, GDT_Byte, 1, line,
+                                                nullptr) != CE_None ||
+                   errors.Failed();
   }
   if (!impl.suspect && impl.noData) {
     for (int r = 0; r < rows; ++r)

@@ -197,11 +197,10 @@ def put(message, about=None, **values):
             value = number(value, name, about)
         elif field.type in _INTEGERS:
             low, high = _INTEGERS[field.type]
-            accepted = traits.accepted(field) or f"an integer from {low} to {high}"
-            if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
-                reject(about, name, value, accepted, WrongType)
-            if not low <= value <= high:
-                reject(about, name, value, accepted)
+            whole = isinstance(value, (int, np.integer)) and not isinstance(value, bool)
+            if not whole or not low <= value <= high:
+                reject(about, name, value, traits.accepted(field) or f"an integer from {low} to {high}",
+                       InvalidArgument if whole else WrongType)
             value = int(value)
         try:
             setattr(message, name, value)
