@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t Mebi = std::uint64_t(1) << 20;
 constexpr std::uint64_t Gibi = std::uint64_t(1) << 30;
-constexpr std::size_t BudgetCount = 9;
+constexpr std::size_t BudgetCount = 10;
 
 std::array<std::atomic<std::uint64_t>, BudgetCount>& BudgetValues() {
   static std::array<std::atomic<std::uint64_t>, BudgetCount> values;
@@ -51,7 +51,9 @@ const std::vector<BudgetInfo>& Budgets() {
       {Budget::MosaicBytes, "mosaic_bytes", "the bytes of the document of a mosaic", 64 * Mebi, 1,
        64 * Gibi},
       {Budget::OpenMemory, "open_memory", "the bytes that opening a netCDF or HDF5 file takes",
-       512 * Mebi, Mebi, 1024 * Gibi}};
+       512 * Mebi, Mebi, 1024 * Gibi},
+      {Budget::TextureBytes, "texture_bytes", "the decoded bytes of the textures of one model",
+       2 * Gibi, 1, 1024 * Gibi}};
   return budgets;
 }
 

@@ -20,7 +20,8 @@ enum class Budget {
   MosaicFiles,     // mosaic_files: files that a mosaic (VRT) of another process makes be opened in
                    // all, each as often as it is named: sources, their sources, and so on
   MosaicBytes,     // mosaic_bytes: of its document
-  OpenMemory       // open_memory: bytes that opening a netCDF or HDF5 file takes (OpeningProbe.h)
+  OpenMemory,      // open_memory: bytes that opening a netCDF or HDF5 file takes (OpeningProbe.h)
+  TextureBytes     // texture_bytes: of all textures of one OBJ or glTF model, decoded
 };
 
 struct BudgetInfo {

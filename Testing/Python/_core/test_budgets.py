@@ -1,4 +1,5 @@
 """The limits of dspace.limits: their names, what is rejected, and that a file beyond one is an error that names it."""
+import json
 import struct
 import subprocess
 import sys
@@ -35,7 +36,7 @@ def grey_png(side):
 def test_limits_are_known(limits):
     assert limits == {"image_pixels": 128 << 20, "block_bytes": 256 << 20, "message_elements": 8 << 20,
                       "import_memory": 4 << 30, "import_seconds": 300, "raster_pixels": 1 << 50, "mosaic_files": 20000,
-                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20}
+                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20, "texture_bytes": 2 << 30}
 
 
 def test_limits_are_set_together_or_not_at_all(limits):
@@ -99,6 +100,44 @@ def test_all_formats_can_be_read_apart(scene, tmp_path):
         dspace.limits.read_models_apart(False)
     with pytest.raises(dspace.errors.WrongType):
         dspace.limits.read_models_apart("yes")
+
+
+@pytest.mark.parametrize("apart", [False, True])
+@pytest.mark.parametrize("kind", ["obj", "gltf"])
+def test_textures_of_a_model_together(limits, tmp_path, kind, apart):
+    """Two textures of 64 x 64 grey pixels, decoded to the same bytes each."""
+    for name in ("a", "b"):
+        (tmp_path / f"{name}.png").write_bytes(grey_png(64))
+    path = tmp_path / f"model.{kind}"
+    if kind == "obj":
+        (tmp_path / "m.mtl").write_text("newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n")
+        path.write_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n")
+    else:
+        corners = np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0)], "<f4").tobytes() + bytes(24)
+        (tmp_path / "m.bin").write_bytes(corners)
+        path.write_text(json.dumps({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+            "buffers": [{"uri": "m.bin", "byteLength": 60}], "bufferViews": [{"buffer": 0, "byteLength": 36},
+                                                                             {"buffer": 0, "byteOffset": 36, "byteLength": 24}],
+            "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
+                          {"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1}, "material": i} for i in (0, 1)]}],
+            "materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": i}}} for i in (0, 1)],
+            "textures": [{"source": i} for i in (0, 1)], "images": [{"uri": "a.png"}, {"uri": "b.png"}]}))
+    def load():
+        with dspace.Session() as session:  # a session keeps the models that it has read
+            session.scene().load(str(path), up="y")
+
+    dspace.limits.read_models_apart(apart)
+    try:
+        load()  # two gigabytes are accepted
+        dspace.limits.set(texture_bytes=64 * 64)
+        with pytest.raises(dspace.Resource, match=f"model.{kind}.*textures.*the limit texture_bytes is 4096, which"):
+            load()
+        dspace.limits.set(texture_bytes=2 * 64 * 64)
+        load()
+    finally:
+        dspace.limits.read_models_apart(False)
 
 
 def write_stl(path, triangles):

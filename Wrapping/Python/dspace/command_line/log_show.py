@@ -16,7 +16,7 @@ def show(options):
         last, first = file.last, file.first
         summary = file.summary
         print(f"{options.file}: format 1, commands {first} to {last}, {summary.snapshots} snapshots; "
-              "every checksum holds")
+              f"{'every checksum holds' if last or summary.snapshots else 'nothing is in it'}")
         if summary.kind:
             when = datetime.datetime.fromtimestamp(summary.first_wall_s, datetime.timezone.utc)
             print(f"simulation time {summary.first_time_s:g} to {summary.last_time_s:g} s; recorded in "

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <map>
 
+#include <dspace/Budgets.h>
 #include <dspace/import/files/ImageReader.h>
 
 namespace dspace {
 
 namespace {
-
-// All textures of one file together: beyond this a file is rejected, whatever its compressed size.
-constexpr std::size_t MaximumTextureBytes = std::size_t(1) << 31;
 
 // sRGB encoding of a linear value in [0, 1] (IEC 61966-2-1).
 double Encode(double linear) {
@@ -110,9 +108,9 @@ private:
       this->Warnings_.push_back(where + " is left out: " + e.what());
     }
     this->TextureBytes_ += image ? image->pixels.size() : 0;
-    if (this->TextureBytes_ > MaximumTextureBytes) {
-      this->Document_.Fail("has more than " + std::to_string(MaximumTextureBytes) +
-                               " bytes of decoded textures",
+    if (this->TextureBytes_ > BudgetOf(Budget::TextureBytes)) {
+      this->Document_.Fail("its textures have " + std::to_string(this->TextureBytes_) +
+                               " bytes or more, decoded; " + BudgetText(Budget::TextureBytes),
                            Error::Kind::Resource);
     }
     this->Images_.emplace(index, image);

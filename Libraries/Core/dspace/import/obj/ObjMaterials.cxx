@@ -7,6 +7,7 @@
 
 #include <tiny_obj_loader.h>
 
+#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/import/files/ImageReader.h>
 
@@ -153,10 +154,10 @@ private:
       this->Warnings_.push_back("material '" + material.name +
                                 "': its texture is left out: " + e.what());
     }
-    if (this->ImageBytes_ > std::size_t(2) * MaximumImageBytes) {
+    if (this->ImageBytes_ > BudgetOf(Budget::TextureBytes)) {
       throw Error(Error::Kind::Resource, FileObject(this->ObjPath_),
-                  "has more than " + std::to_string(2 * MaximumImageBytes) +
-                      " bytes of decoded textures");
+                  "its textures have " + std::to_string(this->ImageBytes_) +
+                      " bytes or more, decoded; " + BudgetText(Budget::TextureBytes));
     }
   }
 

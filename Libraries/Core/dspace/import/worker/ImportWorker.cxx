@@ -258,6 +258,7 @@ WorkerRequest RequestFor(WorkerRequest::What what, const std::string& path,
   request.memory = BudgetOf(Budget::ImportMemory);
   request.seconds = BudgetOf(Budget::ImportSeconds);
   request.imagePixels = BudgetOf(Budget::ImagePixels);
+  request.textureBytes = BudgetOf(Budget::TextureBytes);
   return request;
 }
 

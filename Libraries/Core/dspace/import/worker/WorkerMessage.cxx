@@ -104,6 +104,7 @@ std::string RequestText(const WorkerRequest& request) {
   text.Number(request.memory);
   text.Number(request.seconds);
   text.Number(request.imagePixels);
+  text.Number(request.textureBytes);
   return text.Text();
 }
 
@@ -118,6 +119,7 @@ WorkerRequest RequestOf(const std::string& payload) {
   request.memory = from.Number<std::uint64_t>();
   request.seconds = from.Number<std::uint64_t>();
   request.imagePixels = from.Number<std::uint64_t>();
+  request.textureBytes = from.Number<std::uint64_t>();
   from.End();
   return request;
 }

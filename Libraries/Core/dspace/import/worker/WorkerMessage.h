@@ -68,6 +68,7 @@ struct WorkerRequest {
   std::uint64_t memory = 0;  // bytes
   std::uint64_t seconds = 0; // of the processor and of the clock
   std::uint64_t imagePixels = 0;
+  std::uint64_t textureBytes = 0;
 };
 std::string RequestText(const WorkerRequest& request);
 WorkerRequest RequestOf(const std::string& payload);

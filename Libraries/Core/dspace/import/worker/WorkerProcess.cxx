@@ -150,6 +150,7 @@ void Serve(const WorkerRequest& request, const WorkerReaders& readers) {
                            const confine::ReaderRules& rules) {
   LimitChild(request);
   SetBudget("image_pixels", request.imagePixels);
+  SetBudget("texture_bytes", request.textureBytes);
   SetImportFileOpener(AskForFile);
   try {
     rules.Enforce();
