@@ -2,8 +2,6 @@
 // the ground is, where it stands, and what the fragment shader is given.
 layout(location = 0) in vec2 cell; // post of the window, 0 to cells
 
-uniform vec2 firstPost; // of the lattice, in the window's posts: those outside collapse into it
-uniform vec2 lastPost;
 uniform vec2 lastPlace; // where the last one stands: the lattice may end between two
 uniform float heightHigh; // of the camera, as two floats
 uniform float heightLow;

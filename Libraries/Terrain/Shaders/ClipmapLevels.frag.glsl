@@ -2,8 +2,6 @@
 #ifdef DSPACE_LEVELS
 in vec2 awayAt; // from the camera [posts]
 uniform float levelOpacity;
-uniform int level;
-uniform vec3 blend;
 
 vec3 withLevels(vec3 color)
 {

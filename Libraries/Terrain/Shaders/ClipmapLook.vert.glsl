@@ -27,12 +27,24 @@ out float hole;
 
 #ifdef DSPACE_HORIZON
 out vec2 horizonAt;
+#ifdef DSPACE_ANGLES
+out vec2 postPlace;
+out vec3 verticalVC;
+out vec3 acrossVC;
+out vec3 downVC;
+#endif
 #endif
 
 void putLook(Standing standing, Ground ground, vec2 place)
 {
 #ifdef DSPACE_HORIZON
   horizonAt = ground.horizon;
+#ifdef DSPACE_ANGLES
+  postPlace = place;
+  verticalVC = standing.verticalVC;
+  acrossVC = standing.acrossVC;
+  downVC = standing.downVC;
+#endif
 #endif
 #ifdef DSPACE_LABEL
   label = uint(objectLabel);

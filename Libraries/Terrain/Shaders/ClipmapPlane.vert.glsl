@@ -16,6 +16,11 @@ Standing standingAt(vec2 place, vec4 here, float above)
   standing.normalVC = upNormalVC - here.y * slopeColumnVC - here.z * slopeRowVC;
   standing.cosSlope = dot(normalize(standing.normalVC), normalize(upNormalVC));
   standing.facing = vec3(-(slopePlane * here.yz), 1.0);
+#if defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES)
+  standing.verticalVC = upNormalVC;
+  standing.acrossVC = columnVC;
+  standing.downVC = rowVC;
+#endif
 #ifdef DSPACE_LAYER_NORMALS
   standing.axesVC = normalsVC;
 #endif

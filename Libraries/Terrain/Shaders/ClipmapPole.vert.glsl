@@ -56,6 +56,12 @@ Standing standingAt(vec2 place, vec4 here, float above)
 #ifdef DSPACE_MIXED
   poleDirection = vertical;
 #endif
+#if defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES)
+  mat3 axes = mat3(poleXVC, poleYVC, poleZVC);
+  standing.verticalVC = axes * vertical;
+  standing.acrossVC = distance * 2.0 * stepPlane.x / there1 * (axes * alongX);
+  standing.downVC = distance * 2.0 * stepPlane.y / there1 * (axes * alongY);
+#endif
 #ifdef DSPACE_LAYER_NORMALS
   standing.axesVC = mat3(poleXVC, poleYVC, poleZVC) * mat3(alongX, alongY, vertical);
 #endif

@@ -1,18 +1,10 @@
-#version 330 core
-//DSPACE::Defines
 // The heights of one clipmap level: posts are fetched, and near the level's outline turned into the
 // next coarser level's (Losasso and Hoppe 2004).
-uniform sampler2DArray posts; // height, slopes a level-0 column and row, 1 in a hole, else tracks
 #ifdef DSPACE_HORIZON
 uniform sampler2DArray horizons; // ClipmapHorizon's texels, as `posts`
 #endif
-uniform int texelMask;
-uniform int level;
-uniform ivec2 windowTexel; // texel of the window's first post, here and in the coarser level
-uniform ivec2 coarseTexel;
+uniform ivec2 coarseTexel; // of the window's first post in the coarser level
 uniform vec2 endPost; // where the lattice ends: nowhere around a body
-uniform vec2 cameraPost;
-uniform vec3 blend; // distance where blending begins, 1 / its width, the camera's distance [posts]
 
 struct Ground
 {
@@ -22,11 +14,6 @@ struct Ground
   vec2 horizon;
 #endif
 };
-
-vec4 postAt(ivec2 texel, int layer)
-{
-  return texelFetch(posts, ivec3(texel & texelMask, layer), 0);
-}
 
 #ifdef DSPACE_HORIZON
 vec2 horizonOf(ivec2 texel, int layer)
@@ -45,8 +32,7 @@ Ground groundAt(vec2 at)
 #ifdef DSPACE_HORIZON
   ground.horizon = horizonOf(windowTexel + post, level);
 #endif
-  vec2 away = abs(at - cameraPost);
-  float coarser = clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
+  float coarser = coarserShare(at);
   if (coarser > 0.0)
   {
     // The coarser surface at this place: a post of it, or the middle of an edge or a diagonal. The

@@ -50,6 +50,12 @@ Standing standingAt(vec2 place, vec4 here, float above)
   standing.cosSlope = dot(n, direction + vec3(0.0, 0.0, 1.0)) / length(n);
   standing.facing = vec3(-here.y / (distance * max(cosLatitude, 1e-6) * stepBase.x),
     -here.z / (along * stepBase.y), 1.0);
+#if defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES)
+  mat3 axes = mat3(eastVC, northVC, upVC);
+  standing.verticalVC = axes * (direction + vec3(0.0, 0.0, 1.0));
+  standing.acrossVC = distance * cosLatitude * stepAngles.x * (axes * east);
+  standing.downVC = along * stepAngles.y * (axes * north);
+#endif
 #ifdef DSPACE_LAYER_NORMALS
   standing.axesVC = mat3(eastVC, northVC, upVC) *
     mat3(east, north, direction + vec3(0.0, 0.0, 1.0));

@@ -45,6 +45,11 @@ struct Standing
   vec3 normalVC; // any length, as all that follows
   float cosSlope;
   vec3 facing; // the normal: local east, north, up; of a pole's chart in its axes
+#if defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES)
+  vec3 verticalVC; // any length
+  vec3 acrossVC; // [m] a column of the level along level ground, and a row
+  vec3 downVC;
+#endif
 #ifdef DSPACE_LAYER_NORMALS
   mat3 axesVC; // takes normals in the chart's axes, the third up, to the view's
 #endif

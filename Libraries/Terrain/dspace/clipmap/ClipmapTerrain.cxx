@@ -178,6 +178,7 @@ std::shared_ptr<HorizonBlocks> ClipmapTerrain::Horizons(std::size_t chart) const
   std::shared_ptr<HorizonBlocks>& horizons = this->Horizons_.at(chart);
   if (!horizons) {
     HorizonOptions options;
+    options.near = 8; // posts that the pixels of planes of numbers follow by themselves
     options.heights = this->Options_.heights;
     horizons = std::make_shared<HorizonBlocks>(
         HorizonSweep(this->Charts_[chart].pyramid, this->Charts_[chart].placement, options));

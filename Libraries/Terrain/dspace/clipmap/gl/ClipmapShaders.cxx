@@ -18,6 +18,7 @@
 #include "ClipmapStanding_vert.h"
 #include "ClipmapStyle_frag.h"
 #include "ClipmapStyle_vert.h"
+#include "ClipmapTexels.h"
 #include "Clipmap_vert.h"
 
 namespace dspace {
@@ -25,7 +26,8 @@ namespace {
 
 // `standing` says where posts stand.
 std::string ComposeVertexShader(const char* standing) {
-  return std::string(ClipmapPosts_vert) + ClipmapStanding_vert + standing + ClipmapLook_vert +
+  return std::string("#version 330 core\n//DSPACE::Defines\n") + ClipmapTexels +
+         ClipmapPosts_vert + ClipmapStanding_vert + standing + ClipmapLook_vert +
          ClipmapStyle_vert + Clipmap_vert;
 }
 
@@ -47,7 +49,9 @@ const char* ClipmapVertexShader(PostPlacement::Kind kind) {
 }
 
 const char* ClipmapFragmentFunctions() {
-  static const std::string functions = std::string(ClipmapStyle_frag) + ClipmapPole_frag +
+  static const std::string functions =
+      "#if defined(DSPACE_LEVELS) || (defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES))\n" +
+      std::string(ClipmapTexels) + "#endif\n" + ClipmapStyle_frag + ClipmapPole_frag +
                                        ClipmapLayers_frag + ClipmapDetails_frag + ClipmapRamp_frag +
                                        ClipmapLevels_frag + ClipmapLines_frag +
                                        ClipmapHorizon_frag + ClipmapColor_frag;
