@@ -187,6 +187,12 @@ int main(int count, char** arguments) {
     return Start(application);
   } catch (const std::exception& error) {
     std::cerr << "DspaceQt: " << error.what() << "\n";
+    const bool unattended = std::any_of(arguments, arguments + count, [](const char* argument) {
+      return std::string(argument).rfind("--screenshot", 0) == 0;
+    });
+    if (unattended) {
+      return 1; // nobody would close a dialog
+    }
     QMessageBox box(QMessageBox::Critical, QStringLiteral("DspaceQt"),
                     QString::fromUtf8(error.what()), QMessageBox::Close);
     box.setTextInteractionFlags(Qt::TextSelectableByMouse | Qt::TextSelectableByKeyboard);

@@ -6,6 +6,8 @@
 #include <set>
 #include <utility>
 
+#include <dlfcn.h>
+
 #include <QApplication>
 #include <QMainWindow>
 #include <QPointer>
@@ -25,16 +27,40 @@ vtkStandardNewMacro(vtkDspaceWindows);
 
 namespace {
 
+// Whether an X server answers at DISPLAY. By the library of Qt's own plug-in: without it, Qt says
+// so.
+bool CanReachX() {
+  void* library = dlopen("libxcb.so.1", RTLD_NOW | RTLD_LOCAL);
+  if (!library) {
+    return true;
+  }
+  const auto connect =
+      reinterpret_cast<void* (*)(const char*, int*)>(dlsym(library, "xcb_connect"));
+  const auto failed = reinterpret_cast<int (*)(void*)>(dlsym(library, "xcb_connection_has_error"));
+  const auto disconnect = reinterpret_cast<void (*)(void*)>(dlsym(library, "xcb_disconnect"));
+  bool reached = true;
+  if (connect && failed && disconnect) {
+    void* connection = connect(nullptr, nullptr);
+    reached = failed(connection) == 0;
+    disconnect(connection);
+  }
+  dlclose(library);
+  return reached;
+}
+
 // Why no window can be opened; empty: one can. Qt ends the process where there is no display.
 std::string NoDisplay() {
   const std::string platform = qEnvironmentVariable("QT_QPA_PLATFORM").toStdString();
-  if (!platform.empty()) {
+  if (!platform.empty() && platform.rfind("xcb", 0) != 0) {
     return "";
   }
   const auto set = [](const char* name) {
     const char* value = std::getenv(name);
     return value && *value;
   };
+  if (set("DISPLAY") && !set("WAYLAND_DISPLAY") && !CanReachX()) {
+    return "the display '" + std::string(std::getenv("DISPLAY")) + "' (DISPLAY) cannot be reached";
+  }
   if (set("DISPLAY") || set("WAYLAND_DISPLAY")) {
     return "";
   }

@@ -53,7 +53,7 @@ const std::vector<BudgetInfo>& Budgets() {
       {Budget::OpenMemory, "open_memory", "the bytes that opening a netCDF or HDF5 file takes",
        512 * Mebi, Mebi, 1024 * Gibi},
       {Budget::TextureBytes, "texture_bytes", "the decoded bytes of the textures of one model",
-       2 * Gibi, 1, 1024 * Gibi}};
+       512 * Mebi, 1, 1024 * Gibi}};
   return budgets;
 }
 

@@ -36,7 +36,7 @@ def grey_png(side):
 def test_limits_are_known(limits):
     assert limits == {"image_pixels": 128 << 20, "block_bytes": 256 << 20, "message_elements": 8 << 20,
                       "import_memory": 4 << 30, "import_seconds": 300, "raster_pixels": 1 << 50, "mosaic_files": 20000,
-                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20, "texture_bytes": 2 << 30}
+                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20, "texture_bytes": 512 << 20}
 
 
 def test_limits_are_set_together_or_not_at_all(limits):
@@ -130,7 +130,7 @@ def test_textures_of_a_model_together(limits, tmp_path, kind, apart):
 
     dspace.limits.read_models_apart(apart)
     try:
-        load()  # two gigabytes are accepted
+        load()
         dspace.limits.set(texture_bytes=64 * 64)
         with pytest.raises(dspace.Resource, match=f"model.{kind}.*textures.*the limit texture_bytes is 4096, which"):
             load()

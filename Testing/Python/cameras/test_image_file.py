@@ -208,11 +208,14 @@ except dspace.Io as error:
 """
 
 
-@pytest.mark.parametrize("room", [0, 4096, 100_000])
+@pytest.mark.parametrize("room", [0, 4096, 100_000, -1, -9, -13])
 @pytest.mark.parametrize("name, kind", [("a.png", "uint8"), ("a.tif", "uint16"), ("a.exr", "float32")])
 def test_a_file_that_cannot_grow_leaves_the_one_before(tmp_path, name, kind, room):
-    """The system writes no more than `room` bytes, as on a full disk."""
+    """The system writes no more than `room` bytes, as on a full disk; less than 0: than the whole file has."""
     path = tmp_path / name
+    if room < 0:
+        subprocess.run([sys.executable, "-W", "ignore", "-c", FULL, str(path), kind, str(1 << 30)], check=True)
+        room += path.stat().st_size
     before = np.arange(12, dtype=kind).reshape(3, 4)
     write_image(path, before)
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", FULL, str(path), kind, str(room)], capture_output=True, text=True)

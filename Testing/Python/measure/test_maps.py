@@ -260,6 +260,7 @@ def test_a_polar_raster_on_its_body(scene, tmp_path):
     ({"height": -1.0}, dspace.InvalidArgument, "height is -1"),
     ({"azimuths": 0}, dspace.InvalidArgument, "azimuths is 0; accepted: 1 to 3600"),
     ({"azimuths": 4000}, dspace.InvalidArgument, "azimuths is 4000"),
+    ({"path": "map.png"}, dspace.InvalidArgument, "the path is 'map.png'; accepted: a GeoTIFF"),
     ({"extent": (1.0, 2.0)}, dspace.InvalidArgument, "left, top, right, bottom"),
     ({"extent": (500.0, 600.0, 510.0, 590.0)}, dspace.InvalidArgument, "no cell of the map lies on its data"),
     ({"cell_size": 100.0}, dspace.InvalidArgument, "accepted: up to 64"),

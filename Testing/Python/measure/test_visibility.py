@@ -226,6 +226,12 @@ def test_bad_input(scene):
         scene.contacts("/", "sun", 0.0, 1e5)
     with pytest.raises(dspace.InvalidArgument, match="its area is 0"):
         scene.power_profile(place, dspace.Panel(0.0), 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="elevation_deg is 99.*-90 to 90"):
+        scene.power_profile(place, dspace.Panel(elevation_deg=99.0), 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="power profile: there is no panel"):
+        scene.power_profile(place, [], 0.0, 1e5)
+    with pytest.raises(dspace.InvalidArgument, match="power profile: the span runs from .* accepted: an end after the start"):
+        scene.power_profile(place, dspace.Panel(), 1e5, 1e5)
     with pytest.raises(dspace.WrongType, match="accepted: a dspace.Panel"):
         scene.power_profile(place, [1.0], 0.0, 1e5)
     with pytest.raises(dspace.InvalidArgument, match="its capacity is 0"):

@@ -53,6 +53,16 @@ def test_windows_open_draw_and_close(display):
     assert done.stdout.strip() == "done", done.stderr
 
 
+def test_a_display_that_does_not_answer_is_an_error():
+    """Qt would end the process."""
+    script = ("import dspace\nv = dspace.Session().scene().add_viewport((60, 40))\ntry:\n    v.show()\n"
+              "except dspace.Resource as error:\n    print(error)\n")
+    environment = {**os.environ, "DISPLAY": ":4711"}
+    environment.pop("WAYLAND_DISPLAY", None)
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120, env=environment)
+    assert done.returncode == 0 and "the display ':4711' (DISPLAY) cannot be reached" in done.stdout, done.stderr
+
+
 def test_without_a_display_the_error_says_so(scene):
     scene.add_camera(eye=(3, -4, 2), target=(0, 0, 0))
     view = scene.add_viewport((32, 20))

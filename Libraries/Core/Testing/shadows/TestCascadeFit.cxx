@@ -105,6 +105,30 @@ TEST(CascadeFit, TexelsAreOfTwoCentimetresAtFiveMetres) {
   EXPECT_DOUBLE_EQ(fit.cascades[3].end, 2048.0);
 }
 
+// The same 60 m by ever longer lenses: the maps are as fine as those from nearby, and hold what is
+// seen.
+TEST(CascadeFit, ALongLensHasTheTexelsOfAShortOne) {
+  const auto fit = [](double distance) {
+    Projection projection;
+    projection.verticalFov_deg = 2.0 * std::atan(30.0 / distance) * 180.0 / M_PI;
+    return FitCascades(projection, 640, 480, SunFrom({1, 1, 1}), distance - 30.0, distance + 30.0,
+                       ShadowLook());
+  };
+  for (const double distance : {300.0, 3e3, 1e5}) {
+    const CascadeFit far = fit(distance);
+    EXPECT_LE(far.cascades[3].radius, 1.5 * std::hypot(30.0, 40.0, 40.0)) << distance;
+    EXPECT_GE(far.cascades[3].end, distance + 30.0);
+    const double angle = std::atan(30.0 / distance);
+    for (const double depth : {distance - 29.9, distance, distance + 29.9}) {
+      for (const double side : {-1.0, 1.0}) {
+        const Eigen::Vector3d map = OnMap(far, 3, {0.0, side * depth * std::tan(angle), -depth});
+        EXPECT_LT(map.cwiseAbs().maxCoeff(), 1.0) << distance;
+        EXPECT_GE(map.z(), 0.0);
+      }
+    }
+  }
+}
+
 // All maps of a parallel view have all of it; each resolves four times wider penumbrae, and sizes
 // do not change with small changes of what is seen.
 TEST(CascadeFit, MapsOfAParallelViewAreForEverWiderPenumbrae) {

@@ -78,7 +78,9 @@ TEST_F(TerrainCommands, AnswersAndIsDrawn) {
   const GraphicsObject& object = this->Interpreter_.FindScene("scene")->Object(terrain.object());
   EXPECT_EQ(object.nature, Nature::Physical);
   ASSERT_FALSE(object.levels.at(0).parts.empty());
-  EXPECT_TRUE(object.levels.at(0).parts[0].material->texture);
+  // Plain ground, as a clipmap has it: the lights shade it, and no relief is painted on.
+  EXPECT_FALSE(object.levels.at(0).parts[0].material->texture);
+  EXPECT_NEAR(object.levels.at(0).parts[0].material->color[0], 0.85, 1e-12);
 }
 
 TEST_F(TerrainCommands, FocusKeepsTheMeshesThatDoNotChange) {

@@ -22,7 +22,8 @@ bool IsMessage(const Field& field) {
   return field.cpp_type() == Field::CPPTYPE_MESSAGE;
 }
 
-// Whether a message of this kind can hold text, at any depth. `seen`: kinds that have been looked at.
+// Whether a message of this kind can hold text, at any depth. `seen`: kinds that have been looked
+// at.
 bool CanHoldText(const Descriptor& kind, std::set<const Descriptor*>& seen) {
   if (!seen.insert(&kind).second) {
     return false;
@@ -69,7 +70,7 @@ const TextPlan& PlanOf(const Message& message) {
 }
 
 // Calls visit(field) for each set field that is text or leads to some, until it returns true.
-template <typename Visit> bool AnyField(const Message& message, Visit&& visit) {
+template<typename Visit> bool AnyField(const Message& message, Visit&& visit) {
   const TextPlan& plan = PlanOf(message);
   if (std::any_of(plan.fields.begin(), plan.fields.end(), visit)) {
     return true;

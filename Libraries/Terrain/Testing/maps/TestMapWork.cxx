@@ -118,6 +118,16 @@ TEST_F(MapWork, AnInterruptedFileGetsTheTilesThatItLacks) {
   }
   EXPECT_TRUE(BytesOf(path) == BytesOf(whole));
   EXPECT_THROW(TileFile(path, this->Layout_), Error); // it exists
+
+  // The file to be replaced stays until the new one is whole.
+  const auto before = BytesOf(path);
+  { const TileFile broken(path, this->Layout_, true); }
+  EXPECT_TRUE(BytesOf(path) == before);
+  TileFile file(path, this->Layout_, true);
+  std::atomic<int> made = 0;
+  EXPECT_TRUE(fill(file, 1, made));
+  EXPECT_TRUE(BytesOf(path) == BytesOf(whole));
+  EXPECT_FALSE(std::filesystem::exists(path + ".part"));
 }
 
 TEST_F(MapWork, AnErrorOfOneTileEndsTheWork) {

@@ -57,6 +57,9 @@ TEST(InnerNames, FindsThePixelsThatALabelNames) {
       {"^IMAGE = \"b.img\"\n^SPECTRAL_QUBE = \"e.qub\"", {folder / "b.img", folder / "e.qub"}},
       {"OBJECT = COMPRESSED_FILE\nFILE_NAME = \"f.jp2\"\nEND_OBJECT", {folder / "f.jp2"}},
       {"OBJECT = UNCOMPRESSED_FILE\nFILE_NAME = \"f.img\"\nEND_OBJECT", {}},
+      {"^IMAGE # a comment\n = (\"../b.img\", 1)", {folder / "../b.img"}},
+      {"^IMAGE = /* \"c.img\" */ \"b.img\"", {folder / "b.img"}},
+      {"/* " + std::string(5 << 20, 'x') + " */\n^IMAGE = \"b.img\"", {folder / "b.img"}},
       {"^IMAGE", {}},
       {"^IMAGE = \"", {}},
   };
@@ -65,6 +68,8 @@ TEST(InnerNames, FindsThePixelsThatALabelNames) {
   }
   EXPECT_EQ(Asked(WriteText(path, "Object = IsisCube\n  ^Core = b.cub\n")),
             std::vector<std::string>{folder / "b.cub"});
+  EXPECT_EQ(Asked(WriteText(path, "A = 1\nODL_VERSION_ID = ODL3\n^IMAGE = b.img\n")),
+            std::vector<std::string>{folder / "b.img"});
   EXPECT_EQ(Asked(WriteText(path, "no label ^IMAGE = b.img")), std::vector<std::string>());
 }
 
@@ -72,24 +77,35 @@ TEST(InnerNames, RejectsDocumentsWhoseCrsNamesAFile) {
   const TemporaryFolder folder;
   const std::string path = folder / "a.json";
   const std::string space(5 << 20, ' '); // the name lies on the border of two parts
-  for (const std::string& text : {
-           std::string(R"({"crs": "+init=/outside:1"})"),
-           std::string(R"({"crs": "+proj=longlat +nadgrids=/outside"})"),
-           std::string(R"({"crs": "+proj=longlat +geoidgrids=g.gtx"})"),
-           std::string(R"({"crs": "\u002binit=/outside:1"})"),
-           std::string(R"({"crs": "\u002Bin\u0069t=/outside:1"})"),
-           std::string("<SRS>&#43;proj=longlat &#x2B;nadg&#114;ids=/outside</SRS>"),
-           std::string("<SRS>GEOGCS[&quot;a&quot;,EXTENSION[&quot;PROJ4_GRIDS&quot;,&quot;/o&quot;]]</SRS>"),
-           std::string(R"({"crs": "BOUNDCRS[PARAMETERFILE[\"Difference file\",\"/outside\"]]"})"),
-           "{" + space.substr(0, (4 << 20) - 3) + "+init=/outside:1",
-           "{" + space + "+init=/outside:1",
-       }) {
+  for (
+      const std::string& text : {
+          std::string(R"({"crs": "+init=/outside:1"})"),
+          std::string(R"({"crs": "+proj=longlat +nadgrids=/outside"})"),
+          std::string(R"({"crs": "+proj=longlat +geoidgrids=g.gtx"})"),
+          std::string(R"({"crs": "\u002binit=/outside:1"})"),
+          std::string(R"({"crs": "\u002Bin\u0069t=/outside:1"})"),
+          std::string("<SRS>&#43;proj=longlat &#x2B;nadg&#114;ids=/outside</SRS>"),
+          std::string(
+              "<SRS>GEOGCS[&quot;a&quot;,EXTENSION[&quot;PROJ4_GRIDS&quot;,&quot;/o&quot;]]</SRS>"),
+          std::string(R"({"crs": "BOUNDCRS[PARAMETERFILE[\"Difference file\",\"/outside\"]]"})"),
+          std::string(R"({"crs": "+proj=longlat +nadgrids=@null,/outside"})"),
+          std::string(R"({"crs": "+proj=longlat +nadgrids\n=/outside"})"),
+          std::string(R"({"crs": "BOUNDCRS[PARAMETERFILE[\"x,@null\",\"/outside\"]]"})"),
+          std::string(R"(<SRS>METHOD["PROJ-based operation method: proj=tinshift file=/o"]</SRS>)"),
+          std::string("<SRS>+proj=pipeline +step +proj=tinshift +file=/o</SRS>"),
+          std::string(
+              "<SRS>GEOGCS[&QUOT;a&QUOT;,EXTENSION[&QUOT;PROJ4_GRIDS&QUOT;,&QUOT;/o&QUOT;]]</SRS>"),
+          std::string("<SRS>+pro&#x0000000000000000000006A; +nad&#4294967399;rids=/o</SRS>"),
+          std::string("<SRS>+init=/outside:1</SRS>\0\0", 29),
+          "{" + space.substr(0, (4 << 20) - 3) + "+init=/outside:1",
+          "{" + space + "+init=/outside:1",
+      }) {
     EXPECT_NE(InnerRejection(WriteText(path, text)).find("a coordinate system in it names a file"),
               std::string::npos)
         << text.substr(0, 200);
   }
   for (const char* text :
-       {R"({"url": "http://a/?grids=3", "name": "initial=5"})",
+       {R"({"url": "http://a/?grids=3", "name": "initial=5"})", R"({"name": "Arts + Initiatives"})",
         R"({"crs": "+proj=merc +a=6378137 +nadgrids=@null +wktext"})",
         R"({"crs": "BOUNDCRS[PARAMETERFILE[\"Difference file\",\"@null\"]]"})",
         "<SRS>EPSG:4326</SRS>"}) {
@@ -101,7 +117,8 @@ TEST(InnerNames, LooksBesideTheFile) {
   const TemporaryFolder folder;
   const std::string path = WriteText(folder / "a.asc", "ncols 1");
   EXPECT_EQ(InnerRejection(path), "");
-  for (const char* beside : {"a.prj", "a.PRJ", "a.asc.aux.xml", "a.aux.xml", "a.hdr", "a.asc.hdr"}) {
+  for (const char* beside :
+       {"a.prj", "a.PRJ", "a.asc.aux.xml", "a.aux.xml", "a.hdr", "a.asc.hdr"}) {
     const std::string other = WriteText(folder / beside, "+init=/outside:1");
     EXPECT_NE(InnerRejection(path).find(other), std::string::npos) << beside;
     std::filesystem::remove(other);
@@ -122,10 +139,12 @@ TEST(CrsFiles, AreFoundInACrsThatWasRead) {
   };
   EXPECT_TRUE(names("+proj=longlat +ellps=bessel +nadgrids=/nowhere/a.gsb"));
   EXPECT_TRUE(names("+proj=longlat +datum=WGS84 +geoidgrids=/nowhere/a.gtx +vunits=m"));
+  EXPECT_TRUE(names("+proj=longlat +ellps=bessel +nadgrids=@null,/nowhere/a.gsb"));
   EXPECT_FALSE(names("EPSG:3857")); // "+nadgrids=@null" in WKT 1
   EXPECT_FALSE(names("+proj=utm +zone=33 +ellps=GRS80 +nadgrids=@null"));
   EXPECT_FALSE(names("EPSG:32633"));
-  EXPECT_FALSE(names("+proj=longlat +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7"));
+  EXPECT_FALSE(
+      names("+proj=longlat +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7"));
   EXPECT_FALSE(names("+proj=eqc +R=3396190"));
 }
 

@@ -27,7 +27,7 @@ unsigned char Value(int column, int row) {
 }
 
 std::string WriteStrip(const std::string& path, int columns, int rows,
-                  const std::vector<const char*>& settings) {
+                       const std::vector<const char*>& settings) {
   GDALAllRegister();
   CPLStringList options;
   for (const char* setting : settings) {
@@ -86,8 +86,8 @@ TEST_P(OneStrip, HasNoGaps) {
   MaskGaps(band, {0, 0, Columns, Rows}, Columns, Rows, Columns, mask.data());
   EXPECT_EQ(mask, std::vector<std::uint8_t>(Columns * Rows, 255));
   std::vector<unsigned char> pixel(1);
-  ASSERT_EQ(
-      band.RasterIO(GF_Read, 3, 2500, 1, 1, pixel.data(), 1, 1, GDT_Byte, 0, 0, nullptr), CE_None);
+  ASSERT_EQ(band.RasterIO(GF_Read, 3, 2500, 1, 1, pixel.data(), 1, 1, GDT_Byte, 0, 0, nullptr),
+            CE_None);
   EXPECT_EQ(pixel[0], Value(3, 2500));
 }
 
@@ -102,7 +102,8 @@ INSTANTIATE_TEST_SUITE_P(Compressions, OneStrip,
 TEST(OneStrip, IsMeasuredAsAWhole) {
   const TemporaryFolder folder;
   // 400 MB in a file of a few kB.
-  const std::string path = WriteStrip(folder / "strip.tif", 20000, 20000, {"COMPRESS=DEFLATE", "SPARSE_OK=TRUE"});
+  const std::string path =
+      WriteStrip(folder / "strip.tif", 20000, 20000, {"COMPRESS=DEFLATE", "SPARSE_OK=TRUE"});
   try {
     const ElevationSource source(path);
     FAIL() << "it was accepted";
@@ -116,9 +117,9 @@ TEST(OneStrip, IsMeasuredAsAWhole) {
 TEST(TiffBlocks, AreFoundWhereTheyAre) {
   const TemporaryFolder folder;
   std::vector<std::string> warnings;
-  const DatasetPointer file =
-      OpenRaster(WriteStrip(folder / "strip.tif", Columns, Rows, {"COMPRESS=NONE", "BLOCKYSIZE=100"}),
-                 {}, warnings);
+  const DatasetPointer file = OpenRaster(
+      WriteStrip(folder / "strip.tif", Columns, Rows, {"COMPRESS=NONE", "BLOCKYSIZE=100"}), {},
+      warnings);
   GDALRasterBand& band = *file->GetRasterBand(1);
   ASSERT_EQ(TiffBlocksOf(band), TiffBlocks::Known);
   std::FILE* bytes = std::fopen((folder / "strip.tif").c_str(), "rb");

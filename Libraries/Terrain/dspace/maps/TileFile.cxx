@@ -36,20 +36,18 @@ struct JournalEntry {
   std::uint32_t check; // ~tile: what was written in part does not count
 };
 
-// Removes the file, and the partial one unless it has the inputs.
-void Discard(const std::string& path, const std::string& part, const std::string& journal,
-             std::uint64_t hash) {
+// Removes the partial file unless it has the inputs.
+void Discard(const std::string& part, const std::string& journal, std::uint64_t hash) {
   JournalHead head = {};
   std::ifstream file(journal, std::ios::binary);
   const bool same = file.read(reinterpret_cast<char*>(&head), sizeof(head)) && head.hash == hash;
   std::error_code error;
-  std::filesystem::remove(path, error);
-  if (!error && !same) {
+  if (!same) {
     std::filesystem::remove(journal, error);
     std::filesystem::remove(part, error);
   }
   if (error) {
-    throw Error(Error::Kind::Io, "file '" + path + "'", error.message());
+    throw Error(Error::Kind::Io, "file '" + part + "'", error.message());
   }
 }
 
@@ -118,9 +116,9 @@ std::uint64_t TileFile::BytesOf(const TileFileLayout& layout) {
 }
 
 TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool replace)
-    : Path_(path), Part_(path + ".part"), Columns_(layout.columns), Rows_(layout.rows),
-      TileColumns_((layout.columns + Side - 1) / Side), TileRows_((layout.rows + Side - 1) / Side),
-      Files_(std::make_unique<Files>()) {
+    : Path_(path), Part_(path + ".part"), Replace_(replace), Columns_(layout.columns),
+      Rows_(layout.rows), TileColumns_((layout.columns + Side - 1) / Side),
+      TileRows_((layout.rows + Side - 1) / Side), Files_(std::make_unique<Files>()) {
   const std::string object = "file '" + path + "'";
   AtomicFile::Check(path);
   if (std::filesystem::exists(path) && !replace) {
@@ -130,7 +128,7 @@ TileFile::TileFile(const std::string& path, const TileFileLayout& layout, bool r
   const std::string journal = this->Part_ + ".done";
   this->OpenJournal(journal, 0);
   if (replace) {
-    Discard(path, this->Part_, journal, layout.hash);
+    Discard(this->Part_, journal, layout.hash);
     if (this->Files_->journal >= 0 && !std::filesystem::exists(journal)) {
       ::close(this->Files_->journal);
       this->Files_->journal = -1;
@@ -300,8 +298,10 @@ void TileFile::Finish() {
   if (::fsync(this->Files_->data) != 0) {
     this->Fail(this->Part_, errno);
   }
-  if (::link(this->Part_.c_str(), this->Path_.c_str()) != 0) { // never replaces a file
-    if (errno == EEXIST || ::rename(this->Part_.c_str(), this->Path_.c_str()) != 0) {
+  // link() never replaces a file.
+  if (this->Replace_ || ::link(this->Part_.c_str(), this->Path_.c_str()) != 0) {
+    if ((!this->Replace_ && errno == EEXIST) ||
+        ::rename(this->Part_.c_str(), this->Path_.c_str()) != 0) {
       this->Fail(this->Path_, errno);
     }
   }

@@ -43,7 +43,8 @@ public:
   // Creates the file or continues it. Throws Error: AlreadyExists if `path` exists, if the partial
   // file belongs to other inputs, or if another TileFile of any process writes it; Resource, before
   // anything is written, if the file would not fit the disk; what AtomicFile::Check throws.
-  // `replace`: a file, and a partial one of other inputs, are removed first.
+  // `replace`: Finish() replaces a file, which stays until then; a partial one of other inputs is
+  // removed first.
   TileFile(const std::string& path, const TileFileLayout& layout, bool replace = false);
   ~TileFile();
   TileFile(const TileFile&) = delete;
@@ -71,6 +72,7 @@ private:
   struct Files;
   std::string Path_;
   std::string Part_;
+  bool Replace_ = false;
   int Columns_ = 0;
   int Rows_ = 0;
   int TileColumns_ = 0;

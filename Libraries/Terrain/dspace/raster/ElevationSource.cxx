@@ -324,10 +324,10 @@ void ElevationSource::ReadPixels(const RasterWindow& part, int columns, int rows
     MaskGaps(band, part, columns, rows, stride, mask);
     impl.suspect = errors.Failed();
   } else if (!impl.suspect) {
-    impl.suspect = band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width,
-                                                part.height, mask, columns, rows, GDT_Byte, 1, line,
-                                                nullptr) != CE_None ||
-                   errors.Failed();
+    impl.suspect =
+        band.GetMaskBand()->RasterIO(GF_Read, part.column, part.row, part.width, part.height, mask,
+                                     columns, rows, GDT_Byte, 1, line, nullptr) != CE_None ||
+        errors.Failed();
   }
   if (!impl.suspect && impl.noData) {
     for (int r = 0; r < rows; ++r)

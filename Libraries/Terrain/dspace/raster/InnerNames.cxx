@@ -18,8 +18,8 @@ namespace dspace {
 namespace {
 
 constexpr std::size_t ChunkBytes = 4 << 20;
-constexpr std::size_t OverlapBytes = 4096;  // longer than any CRS text up to its file's name
-constexpr std::size_t LabelBytes = 1 << 20; // of a label that names the files with the pixels
+constexpr std::size_t OverlapBytes = 4096;   // longer than any CRS text up to its file's name
+constexpr std::size_t LabelBytes = 64 << 20; // of a label that names the files with the pixels
 
 struct CloseFile {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
@@ -50,7 +50,8 @@ private:
 
 bool IsLabel(const std::string& start) {
   const std::string head = start.substr(0, 8192);
-  return head.compare(0, 4, "CCSD") == 0 || head.compare(0, 14, "ODL_VERSION_ID") == 0 ||
+  return head.find("CCSD") != std::string::npos ||
+         head.find("ODL_VERSION_ID") != std::string::npos ||
          head.find("PDS_VERSION_ID") != std::string::npos ||
          head.find("IsisCube") != std::string::npos;
 }
@@ -61,7 +62,10 @@ bool MayHoldCrsText(const std::string& start) {
     return true;
   }
   const std::string head = start.substr(0, 8192);
-  return head.find('\0') == std::string::npos && head.find_first_of("{<") != std::string::npos;
+  const std::size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
+  const bool document = first != std::string::npos && (head[first] == '{' || head[first] == '<');
+  return document ||
+         (head.find('\0') == std::string::npos && head.find_first_of("{<#") != std::string::npos);
 }
 
 void CheckCrsTexts(const std::string& path, Parts& parts) {
@@ -98,10 +102,28 @@ std::string ValueAfter(const std::string& text, std::size_t at) {
   return text.substr(std::min(at, text.size()), end == std::string::npos ? end : end - at);
 }
 
+// Of a label: from "#" to the end of the line, and what is between "/*" and "*/", as spaces.
+std::string WithoutComments(std::string text) {
+  char quote = '\0';
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (quote != '\0') {
+      quote = text[i] == quote || text[i] == '\n' ? '\0' : quote;
+    } else if (text[i] == '"' || text[i] == '\'') {
+      quote = text[i];
+    } else if (text[i] == '#' || text.compare(i, 2, "/*") == 0) {
+      const bool line = text[i] == '#';
+      std::size_t end = text.find(line ? "\n" : "*/", i);
+      end = end == std::string::npos ? text.size() : end + (line ? 0 : 2);
+      std::fill(text.begin() + std::ptrdiff_t(i), text.begin() + std::ptrdiff_t(end), ' ');
+    }
+  }
+  return text;
+}
+
 void CheckPointers(const std::string& path, const std::string& text) {
   const auto check = [&](const std::string& name) {
-    const bool number = std::all_of(name.begin(), name.end(),
-                                    [](unsigned char c) { return std::isdigit(c) != 0; });
+    const bool number =
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
     if (!number) {
       FilesGuard::CheckFile(name[0] == '/' ? name : FolderOf(path) + name);
     }
@@ -119,8 +141,7 @@ void CheckPointers(const std::string& path, const std::string& text) {
   while (group != std::string::npos && group > 1 && text.compare(group - 2, 2, "UN") == 0) {
     group = text.find("COMPRESSED_FILE", group + 1);
   }
-  const std::size_t name =
-      group == std::string::npos ? group : text.find("FILE_NAME", group);
+  const std::size_t name = group == std::string::npos ? group : text.find("FILE_NAME", group);
   if (name != std::string::npos) {
     check(ValueAfter(text, name + std::strlen("FILE_NAME")));
   }
@@ -130,7 +151,11 @@ void CheckPointers(const std::string& path, const std::string& text) {
 void CheckFileItself(const std::string& path) {
   Parts parts(path);
   if (IsLabel(parts.Text())) {
-    CheckPointers(path, parts.Text().substr(0, LabelBytes));
+    std::size_t read = 0;
+    do {
+      CheckPointers(path, WithoutComments(parts.Text()));
+      read += ChunkBytes;
+    } while (read < LabelBytes && parts.Next());
   } else if (MayHoldCrsText(parts.Text())) {
     CheckCrsTexts(path, parts);
   }

@@ -116,6 +116,31 @@ TEST_F(LayoutsTest, AskForViewsThatAreGoneAndPlaceThoseThatComeLater) {
   EXPECT_FALSE(this->layouts.Place(strange));
 }
 
+// As starts of a program one after the other: without the view the tree takes its room, and would
+// keep it.
+TEST_F(LayoutsTest, SizesStayWhenViewsComeLater) {
+  QDockWidget* tree = this->Dock("tree", Qt::LeftDockWidgetArea);
+  QDockWidget* view = this->Dock("view 1", Qt::RightDockWidgetArea);
+  this->Show();
+  this->window.resizeDocks({tree, view}, {180, 500}, Qt::Horizontal);
+  QTest::qWait(50);
+  const int width = tree->width();
+  for (int start = 0; start < 3; ++start) {
+    ASSERT_TRUE(this->layouts.SaveLast());
+    delete view;
+    QTest::qWait(50);
+    EXPECT_GT(tree->width(), 2 * width); // it has all of the room
+    ASSERT_TRUE(this->layouts.RestoreLast());
+    QTest::qWait(50);
+    view = new QDockWidget("view 1", &this->window);
+    view->setObjectName("view 1");
+    view->setWidget(new QLabel("view 1"));
+    ASSERT_TRUE(this->layouts.Place(view));
+    EXPECT_TRUE(QTest::qWaitFor([&] { return std::abs(tree->width() - width) < 3; }, 2000))
+        << start << ": " << tree->width() << " for " << width;
+  }
+}
+
 TEST_F(LayoutsTest, BadOnesChangeNothing) {
   QDockWidget* tree = this->Dock("tree", Qt::LeftDockWidgetArea);
   this->Show();

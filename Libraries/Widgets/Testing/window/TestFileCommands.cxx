@@ -173,6 +173,7 @@ TEST_F(FileCommandsTest, ATerrainOfTrianglesIsOpenedInTheOtherThread) {
   plain.set_scene("scene");
   plain.mutable_open_terrain()->set_path(ShippedData().toStdString() + "/field/field.tif");
   plain.mutable_open_terrain()->set_mode(v1::OpenTerrain::TRIANGLES);
+  plain.mutable_open_terrain()->mutable_relief();
   v1::Command command = plain;
   ASSERT_FALSE(interpreter.Execute(plain).has_error()); // reads by itself
   EXPECT_NEAR(plain.open_terrain().relief().sun_elevation_deg(), 53.13, 0.1);

@@ -12,6 +12,7 @@ FORMATS = {".png": ("png", ("uint8", "uint16")), ".tif": ("tiff", ("uint8", "uin
            ".tiff": ("tiff", ("uint8", "uint16", "uint32", "float32")), ".exr": ("openexr", ("uint32", "float32"))}
 KIND = "dspace image"  # what "kind" is in the JSON of the description
 CHANNELS = {1: ("Y",), 3: ("R", "G", "B")}
+PNG_END = b"\0\0\0\0IEND\xaeB`\x82"  # the last chunk and its checksum
 ROWS = 32  # compressed at a time: Ctrl-C is heard between
 TIME = "1970:01:01 00:00:00"  # in place of the time of writing: equal images have equal bytes
 
@@ -111,6 +112,8 @@ class ImageFile:
                 image.read_scanlines(first, min(first + ROWS, height), 0, 0, self._channels, spec.format) is not None
                 for first in range(0, height, ROWS))
             image.close()
+        if self._format == "png":  # its pixels may be whole, and its end missing
+            whole = whole and pathlib.Path(self._file.temporary).read_bytes()[-len(PNG_END):] == PNG_END
         if not whole:
             raise Io(f"{self._about}: it cannot be written: it is incomplete; accepted: a folder with free space", self._about)
 

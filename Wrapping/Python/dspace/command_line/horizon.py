@@ -19,7 +19,7 @@ def add_arguments(parser):
     place.add_argument("--map", action="store_true",
                         help="in place of --site: of every cell of the terrain, to a GeoTIFF with a band per azimuth. The same "
                         "command continues a map that was interrupted")
-    parser.add_argument("--height", type=float, default=2.0, metavar="H", help="above the ground [m], 0 or more (default: 2)")
+    parser.add_argument("--height", type=float, metavar="H", help="above the ground [m], 0 or more (default: 2); not with --frame")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
     parser.add_argument("--scheduler", metavar="ADDRESS",
@@ -30,6 +30,9 @@ def add_arguments(parser):
 
 
 def run(options):
+    if options.frame is not None and options.height is not None:
+        raise Failed("--height: accepted: with --site or --map; a frame has its own height")
+    options.height = 2.0 if options.height is None else options.height
     if options.map:
         run_map(options)
         return

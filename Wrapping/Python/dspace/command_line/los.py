@@ -22,6 +22,9 @@ def add_arguments(parser):
                         help="of radio waves [m]: tells the free part of the first Fresnel zone")
     parser.add_argument("--without", action="append", default=[], metavar="NAME",
                         help="of --recording: an object that is no obstacle, such as an antenna; may be given several times")
+    parser.add_argument("--method", choices=("exact", "image", "both"), default="exact",
+                        help="exact: rays in double precision; image: a picture from the line's start; both: also what the picture shows, "
+                        "and whether it differs (default: exact)")
     parser.set_defaults(run=run)
 
 
@@ -73,7 +76,7 @@ def point_of(ground, place):
 
 def measure(ground, starts, ends, options):
     """The lines, in one request where all ends are of one kind."""
-    more = {"wavelength": options.wavelength, "without": options.without}
+    more = {"wavelength": options.wavelength, "without": options.without, "method": options.method}
     if options.recording is None:
         sites = [tuple(map(ground.site, pair)) for pair in zip(starts, ends)]
         x0, y0, h0, x1, y1, h1 = (np.array([float(getattr(pair[k], name)) for pair in sites])
@@ -109,6 +112,9 @@ def rows_of(ground, starts, ends, lines, recorded):
             row["obstacle"] = lines.object[i].name if lines.object[i] is not None else lines.terrain[i] or None
         if lines.fresnel_free is not None:
             row["fresnel_free"] = lines.fresnel_free[i]
+        if lines.image_clear is not None:
+            row["image_clear"] = bool(lines.image_clear[i])
+            row["image_pixel_deg"] = lines.image_pixel_deg[i] if np.ndim(lines.image_pixel_deg) else lines.image_pixel_deg
         rows.append(row)
     return rows
 
@@ -128,9 +134,18 @@ def told(row):
     text = f"{place_text(row, 'from')} to {place_text(row, 'to')}: " + ("clear" if row["clear"] else (
         f"blocked{' by ' + row['obstacle'] if row.get('obstacle') else ''} after {row['obstacle_distance_m']:.3f} m at "
         f"{row['obstacle_lon_deg']:.7g}, {row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m"))
-    text += f"; range {row['range_m']:.3f} m, clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"
+    text += f"; range {row['range_m']:.3f} m"
+    if np.isfinite(row["clearance_m"]):  # pictures know none
+        text += f", clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"
     if "fresnel_free" in row:
         text += f", {row['fresnel_free']:.3f} of the first Fresnel zone"
+    if "image_clear" in row:
+        text += f"; in the picture {'clear' if row['image_clear'] else 'blocked'}"
+        if row["image_clear"] != row["clear"] and np.isfinite(row["clearance_deg"]):
+            within = abs(row["clearance_deg"]) <= row["image_pixel_deg"]
+            text += (f", which differs: the line passes the ground by less than a pixel ({row['image_pixel_deg']:.4f} deg)" if within else
+                     f", which differs by more than a pixel ({row['image_pixel_deg']:.4f} deg): the picture draws distant ground by "
+                     "coarser posts")
     return text
 
 

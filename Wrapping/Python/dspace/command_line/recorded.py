@@ -16,7 +16,10 @@ def recorded_scene(options):
     """The Scene of the command's recording, at its time."""
     from dspace.playback.playback import Playback
     with tidy_end(), Playback(options.recording) as playback:
-        playback.seek(playback.times[-1] if options.at is None else options.at)
+        first, last = playback.times[0], playback.times[-1]
+        if options.at is not None and not first <= options.at <= last:
+            raise Failed(f"--at {options.at:g}: {options.recording} runs from {first:g} to {last:g} s; accepted: a time within it")
+        playback.seek(last if options.at is None else options.at)
         scenes = playback.session.scenes
         if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
             raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "

@@ -1,4 +1,5 @@
 """Maps of horizons, viewsheds and illumination over terrain."""
+import pathlib
 import time
 
 import numpy as np
@@ -130,6 +131,8 @@ class Maps:
     def _make(self, command, message, about, path, bands, replace, threads, progress, deadline):
         file = message.file
         file.path = file_path(path, "the path", about)
+        if pathlib.PurePath(file.path).suffix.lower() not in (".tif", ".tiff"):
+            reject(about, "the path", file.path, "a GeoTIFF, a name with .tif or .tiff")
         file.replace = flag(replace, "replace", about)
         put(file, about, threads=threads)
         if deadline is not None and not real(deadline, "deadline", about) > 0.0:

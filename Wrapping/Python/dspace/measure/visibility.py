@@ -2,7 +2,7 @@
 import numpy as np
 
 from dspace._core import wire
-from dspace._core.fields import array_of, flag, items, put, put_given, put_vector, reject, text, word
+from dspace._core.fields import array_of, flag, items, put, put_given, put_vector, real, reject, text, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.measure.plans import Battery, BodySite, Panel
 from dspace.measure.results import Contact, Horizon, Moment, PowerProfile, SkyTrack
@@ -91,11 +91,16 @@ class Visibility:
         command = self._scene._command()
         message = command.profile_power
         self._put_place(message.place, place, body, about)
-        for panel in [panels] if isinstance(panels, Panel) else items(panels, "the panels", about, "dspace.Panel"):
+        panels = [panels] if isinstance(panels, Panel) else items(panels, "the panels", about, "dspace.Panel")
+        if not panels:
+            raise InvalidArgument(f"{about}: there is no panel; accepted: a dspace.Panel or a list of them", about)
+        for panel in panels:
             if not isinstance(panel, Panel):
                 reject(about, "the panel", panel, "a dspace.Panel", WrongType)
             out = message.panel.add()
             put(out, about, area=panel.area, efficiency=panel.efficiency)
+            if not -90.0 <= real(panel.elevation_deg, "the panel's elevation_deg", about) <= 90.0:
+                reject(about, "the panel's elevation_deg", panel.elevation_deg, "-90 to 90")
             out.tracking = word(panel.tracking, TRACKING, "the tracking", about)
             put_vector(out.normal, panel.normal, "the normal", about)
         if battery is not None:
@@ -149,6 +154,10 @@ class Visibility:
     def _put_span(self, message, start, end, step, about):
         start, end = (self._scene.tdb(time) if isinstance(time, str) else time for time in (start, end))
         put(message, about, start_s=start, end_s=end, step_s=step)
+        if not message.start_s < message.end_s:
+            start, end = (f"{self._scene.time_text(each)} ({each:.3f} s past J2000 TDB)" if np.isfinite(each) else each
+                          for each in (message.start_s, message.end_s))
+            raise InvalidArgument(f"{about}: the span runs from {start} to {end}; accepted: an end after the start", about)
         if step == 0:
             reject(about, "the step", step, "above 0 s")
 

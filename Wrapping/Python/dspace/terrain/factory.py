@@ -43,9 +43,10 @@ class TerrainFactory:
                     window=None, reflectance=None, no_data=None):
         """Opens a raster of heights (any format that GDAL reads) as a physical object. Returns the Terrain.
 
-        Appearance: give at most one of image, color and relief. image: a file to drape over the terrain (on a clipmap
-        the layer "drape" in full resolution, see add_image()); image_crs and image_extent (left, top, right, bottom in
-        map coordinates) replace what the file lacks. color: one color. relief: shaded relief (the default), a dict of
+        Appearance: give at most one of image, color and relief; without one the ground is plain grey. image: a file to
+        drape over the terrain (on a clipmap the layer "drape" in full resolution, see add_image()); image_crs and
+        image_extent (left, top, right, bottom in map coordinates) replace what the file lacks. color: one color. relief:
+        shading that is painted on (give lit=False, too: else the lights shade it a second time), a dict of
         sun_azimuth_deg, sun_elevation_deg (both of triangles only; default: Scene.sun as it is now, if it is above the
         horizon, else 315 and 45), color_by_height. lit: whether the scene's lights also shade the terrain.
         reflectance: how the ground reflects their light, such as "lunar-lambert" (see GraphicsObject.reflectance;

@@ -9,6 +9,8 @@ namespace {
 
 // How far the maps reach by themselves, in units of the nearest depth.
 constexpr double Reach = 2048.0;
+// A camera whose nearest depth is more than this part of the farthest one.
+constexpr double LongLens = 0.5;
 // By how much each map of a parallel view is wider than the one before.
 constexpr double Wider = 4.0;
 
@@ -79,15 +81,24 @@ CascadeFit FitCascades(const Projection& projection, int width, int height, cons
   fit.sun = sun;
   fit.size = look.size;
   const bool parallel = projection.kind == Projection::Kind::Orthographic;
-  const double first = std::exp2(0.5 * std::floor(2.0 * std::log2(std::max(nearest, 1e-3))));
+  double first = std::exp2(0.5 * std::floor(2.0 * std::log2(std::max(nearest, 1e-3))));
   // Rounded, too: a farthest thing that moves changes nothing until it has moved by half.
-  const double last =
+  double last =
       look.distance > 0.0
           ? look.distance
           : std::min(std::exp2(0.5 * std::ceil(2.0 * std::log2(std::max(farthest, first)))),
                      Reach * first);
   const CornerRays rays(projection, width, height);
-  const double start = parallel ? nearest : 0.0;
+  double start = parallel ? nearest : 0.0;
+  if (!parallel && nearest > LongLens * farthest) {
+    // Up to what it looks at, a camera with a long lens sees nothing that takes shadows: the maps
+    // begin there, in steps of a part of what it sees.
+    const double step = std::exp2(std::floor(std::log2(std::max(farthest - nearest, 1e-3)))) / 8.0;
+    start = (std::floor(nearest / step) - 1.0) * step;
+    first = start;
+    last = look.distance > 0.0 ? std::max(last, start + step)
+                               : (std::ceil(farthest / step) + 1.0) * step;
+  }
   for (int k = 0; k < look.cascades; ++k) {
     CascadeFit::Cascade cascade;
     cascade.end =

@@ -62,7 +62,9 @@ struct CascadeFit {
 // meaning. For others the depths at which the maps end grow by a constant factor. A
 // ShadowLook::distance of 0 reaches to `farthest`, or 2048 times `nearest` if that is less.
 // `nearest` is rounded to a power of the square root of 2, so that the maps keep their sizes while
-// a camera moves a little.
+// a camera moves a little. Maps begin at the camera, those of a long lens (`nearest` is more than
+// half of `farthest`) just before `nearest`: a rover seen from 3 km has the texels that it has from
+// 30 m in a picture of the same size.
 CascadeFit FitCascades(const Projection& projection, int width, int height, const SunPlace& sun,
                        double nearest, double farthest, const ShadowLook& look);
 

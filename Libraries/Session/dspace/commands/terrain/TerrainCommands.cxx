@@ -85,7 +85,7 @@ TerrainPatch ToPatch(v1::OpenTerrain::Patch& from) {
 // where it is above the horizon. `towards_S`: ReliefSun().
 void PutReliefSun(const std::optional<Eigen::Vector3d>& towards_S, const GridTerrain& grid,
                   v1::OpenTerrain& command) {
-  if (!towards_S) {
+  if (!towards_S || !command.has_relief()) {
     return;
   }
   const Eigen::Vector2d angles =

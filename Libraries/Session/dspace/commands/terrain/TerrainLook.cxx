@@ -77,6 +77,11 @@ std::shared_ptr<const Image> ToImage(const Context& context, DrapeImage drape,
   return image;
 }
 
+// The lights shade it, as they do every other surface.
+std::array<double, 3> PlainGround() {
+  return ShadedReliefOptions().ramp.front();
+}
+
 std::shared_ptr<Material> MattMaterial(const v1::OpenTerrain& command, const std::string& terrain) {
   auto material = std::make_shared<Material>();
   material->name = "terrain";
@@ -113,8 +118,9 @@ std::shared_ptr<const Image> RampImage(const ColorRamp& ramp) {
 std::shared_ptr<const Material> MeshMaterial(const Context& context, const GridTerrain& grid,
                                              v1::OpenTerrain& command) {
   auto material = MattMaterial(command, grid.GetName());
-  if (command.has_color()) {
-    material->color = ToColor(command.color(), grid.GetName());
+  if (!command.has_drape() && !command.has_relief()) {
+    material->color =
+        command.has_color() ? ToColor(command.color(), grid.GetName()) : PlainGround();
     return material;
   }
   material->color = {1, 1, 1};
@@ -129,7 +135,7 @@ ClipmapOptions ClipmapLook(const StreamedTerrain& surface, const v1::OpenTerrain
   ClipmapOptions options;
   options.postToMap = surface.Info().pixelToMap * surface.PixelToPost().inverse();
   auto material = MattMaterial(command, surface.GetName());
-  material->color = ShadedReliefOptions().ramp.front();
+  material->color = PlainGround();
   if (command.has_color()) {
     material->color = ToColor(command.color(), surface.GetName());
   } else if (command.relief().has_sun_azimuth_deg() || command.relief().has_sun_elevation_deg()) {

@@ -572,8 +572,9 @@ void ClipmapDrawer::DrawBlocks(const CustomDrawing& drawing, SurfaceShaders::Fea
     program->SetUniformf("horizonRadius", float(drawing.list.Sun()->radius));
     if (program->IsUniformUsed("nearPosts")) {
       const bool plane = chart.placement.GetKind() == PostPlacement::Kind::Plane;
-      program->SetUniformf("nearPosts",
-                           float(this->Terrain_->Horizons(this->ActiveIndex())->Sweep().Options().near));
+      program->SetUniformf(
+          "nearPosts",
+          float(this->Terrain_->Horizons(this->ActiveIndex())->Sweep().Options().near));
       program->SetUniformf("bend", plane ? 0.0f : float(0.5 / chart.placement.Radius()));
     }
   }

@@ -5,6 +5,7 @@
 #include <QDockWidget>
 #include <QJsonArray>
 #include <QMainWindow>
+#include <QTimer>
 
 #include <dspace/Error.h>
 #include <dspace/widgets/settings/SettingsFile.h>
@@ -57,6 +58,7 @@ bool Layouts::Put(const QJsonObject& layout) {
     return false;
   }
   this->Awaited_.clear();
+  this->Put_ = Bytes(layout["docks"]);
   for (const QJsonValue& view : layout["views"].toArray()) {
     const QString dock = ViewPrefix + view.toString();
     if (!this->Window_->findChild<QDockWidget*>(dock)) {
@@ -131,7 +133,18 @@ bool Layouts::RestoreLast() {
 
 bool Layouts::Place(QDockWidget* dock) {
   // Qt also remembers where docks were that the user closed: they come back as new ones.
-  return this->Awaited_.remove(dock->objectName()) && this->Window_->restoreDockWidget(dock);
+  if (!this->Awaited_.remove(dock->objectName()) || !this->Window_->restoreDockWidget(dock)) {
+    return false;
+  }
+  if (this->Awaited_.isEmpty()) {
+    // While docks were missing, the others took their room: now all have the sizes of the layout.
+    QTimer::singleShot(0, this, [this, state = this->Put_] {
+      if (this->Awaited_.isEmpty() && this->Put_ == state) {
+        this->Window_->restoreState(state, Version);
+      }
+    });
+  }
+  return true;
 }
 
 } // namespace dspace::widgets

@@ -54,6 +54,7 @@ private:
 
   QMainWindow* Window_;
   SettingsFile* File_;
+  QByteArray Put_;        // the docks of the restored layout
   QSet<QString> Awaited_; // docks of the restored layout that are not there yet
 };
 
