@@ -19,7 +19,8 @@ namespace dspace {
 // seen.
 struct HorizonTexel {
   float all = 1.5f;     // over all ground
-  float distant = 1.5f; // over the ground beyond HorizonOptions::near posts of the level
+  float distant = 1.5f; // over the ground beyond HorizonOptions::near posts of the level: planes of
+                        // numbers follow nearer ground by themselves (ClipmapHorizon.frag)
 };
 static_assert(sizeof(HorizonTexel) == 8, "tightly packed");
 
