@@ -34,6 +34,11 @@ def test_lines_over_a_wall(capsys, wall, tmp_path):
     assert first.startswith("50.5,20.5,2 to 150.5,20.5,2: blocked after 49.100 m at 99.6, 20.5, height 2.000 m; range 100.000 m, clearance -18.000 m")
     assert second.startswith("50.5,20.5,2 to 150.5,20.5,60: clear; range") and "of the first Fresnel zone" in second
     assert "on a plane: the body's curvature is left out" in err
+    code, out, err = run(capsys, "los", *lines, "--method", "both")
+    assert code == 0 and all(line.endswith("; the same in the picture") for line in out.splitlines()), err
+    code, out, err = run(capsys, "los", *lines, "--method", "image")
+    first, second = out.splitlines()
+    assert first.endswith("; in the picture blocked") and "clearance" not in first and second.endswith("; in the picture clear")
     code, out, err = run(capsys, "los", *lines, "--json", "--out", tmp_path / "lines.csv")
     found = json.loads(out)
     assert code == 0 and [line["clear"] for line in found["lines"]] == [False, True]

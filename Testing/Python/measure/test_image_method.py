@@ -40,6 +40,8 @@ def test_lines_over_gale(scene, gale):
     sure = np.abs(lines.clearance_deg) > lines.image_pixel_deg
     assert sure.sum() > 0.7 * count
     wrong = np.flatnonzero(sure & (lines.clear != lines.image_clear))
+    assert [bool(text) for text in lines.difference] == list(lines.clear != lines.image_clear)
+    assert all("less than a pixel" in text for text in lines.difference if text)
     assert not wrong.size, [(i, lines.clear[i], lines.range[i], lines.clearance_deg[i], lines.distance[i]) for i in wrong]
 
 
@@ -55,7 +57,10 @@ def test_horizons_over_gale(scene, gale):
         assert near.mean() > 0.3
         assert low[near].max() < 0.75 * pixel and high[near].max() < 0.75 * pixel
         assert low.max() < 0.3 and high.max() < 0.3  # coarser levels
+        seen = horizon.elevation_deg > -90.0
+        np.testing.assert_allclose(horizon.image_difference_deg[seen], (horizon.image_elevation_deg - horizon.elevation_deg)[seen])
         alone = scene.horizon(gale.site(*site), 2880, method="image", resolution=1024)
+        assert alone.image_difference_deg is None
         assert np.array_equal(alone.elevation_deg, horizon.image_elevation_deg) and np.isnan(alone.distance).all()
 
 
@@ -68,10 +73,19 @@ def test_a_post_half_a_metre_high_flips_both(scene, tmp_path):
     z[50, 50] = 0.5
     post = scene.add_terrain(write_raster(tmp_path / "post.tif", z), name="post", mode="triangles")
     line = scene.line_of_sight(post.site(30.5, 50.5, 0.4), post.site(70.5, 50.5, 0.4), method="both")
-    assert not line.clear and not line.image_clear
+    assert not line.clear and not line.image_clear and line.difference == ""
     alone = scene.line_of_sight(post.site(30.5, 50.5, 0.4), post.site(70.5, 50.5, 0.4), method="image")
     assert not alone.clear and alone.distance == pytest.approx(line.distance, abs=1e-3)
     assert alone.point == pytest.approx(line.point, abs=1e-3) and np.isnan(alone.clearance_deg)
+    assert alone.difference is None and "None" not in repr(alone) and "blocked after" in repr(alone)
+
+
+@pytest.mark.parametrize("clearance_deg, text", [(-0.01, "by 0.0100 deg, less than a pixel (0.0500 deg)"),
+                                                 (0.2, "by 0.2000 deg, more than a pixel (0.0500 deg): distant ground")])
+def test_a_difference_says_why(clearance_deg, text):
+    clear = clearance_deg > 0
+    line = dspace.LinesOfSight(clear, "", None, np.full(3, np.nan), np.inf, 10.0, 1.0, clearance_deg, None, not clear, 0.05)
+    assert text in line.difference and line.difference.startswith(f"in the picture it is {'blocked' if clear else 'clear'}")
 
 
 def test_objects_count_and_what_is_left_out_does_not(scene):

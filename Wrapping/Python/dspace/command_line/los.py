@@ -115,6 +115,8 @@ def rows_of(ground, starts, ends, lines, recorded):
         if lines.image_clear is not None:
             row["image_clear"] = bool(lines.image_clear[i])
             row["image_pixel_deg"] = lines.image_pixel_deg[i] if np.ndim(lines.image_pixel_deg) else lines.image_pixel_deg
+            if lines.difference is not None:
+                row["difference"] = lines.difference[i]
         rows.append(row)
     return rows
 
@@ -140,12 +142,8 @@ def told(row):
     if "fresnel_free" in row:
         text += f", {row['fresnel_free']:.3f} of the first Fresnel zone"
     if "image_clear" in row:
-        text += f"; in the picture {'clear' if row['image_clear'] else 'blocked'}"
-        if row["image_clear"] != row["clear"] and np.isfinite(row["clearance_deg"]):
-            within = abs(row["clearance_deg"]) <= row["image_pixel_deg"]
-            text += (f", which differs: the line passes the ground by less than a pixel ({row['image_pixel_deg']:.4f} deg)" if within else
-                     f", which differs by more than a pixel ({row['image_pixel_deg']:.4f} deg): the picture draws distant ground by "
-                     "coarser posts")
+        text += f"; {row.get('difference') or 'the same in the picture'}" if "difference" in row else (
+            f"; in the picture {'clear' if row['image_clear'] else 'blocked'}")
     return text
 
 

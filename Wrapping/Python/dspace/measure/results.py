@@ -41,9 +41,28 @@ class LinesOfSight:
         clear = np.asarray(self.clear)
         if clear.shape:
             return f"<dspace.LinesOfSight {int(clear.sum())} of {clear.size} clear>"
-        by = f"terrain {self.terrain!r}" if self.terrain else f"object {getattr(self.object, 'name', None)!r}"
-        return (f"<dspace.LinesOfSight {'clear' if clear else f'blocked by {by} after {self.distance:.6g} m'}, "
-                f"range {self.range:.6g} m, clearance {self.clearance:.6g} m>")
+        by = f" by terrain {self.terrain!r}" if self.terrain else f" by object {self.object.name!r}" if self.object else ""
+        least = f", clearance {self.clearance:.6g} m" if np.isfinite(self.clearance) else ""  # pictures know none
+        return (f"<dspace.LinesOfSight {'clear' if clear else f'blocked{by} after {self.distance:.6g} m'}, "
+                f"range {self.range:.6g} m{least}>")
+
+    @property
+    def difference(self):
+        """Why pictures show something else than the exact results say (method "both"): a str, "" where they agree; an array of
+        them for several lines. A line that passes the ground by less than a pixel's angle may differ; one that differs by more
+        does so because distant ground is drawn by coarser posts. None where there are not both."""
+        if self.image_clear is None or not np.isfinite(np.asarray(self.clearance_deg, float)).any():
+            return None
+
+        def why(clear, image, clearance, pixel):
+            if clear == image:
+                return ""
+            near = abs(clearance) <= pixel
+            return (f"in the picture it is {'clear' if image else 'blocked'}: the line passes the ground by {abs(clearance):.4f} deg, "
+                    + (f"less than a pixel ({pixel:.4f} deg)" if near else
+                       f"more than a pixel ({pixel:.4f} deg): distant ground is drawn by coarser posts"))
+        found = np.vectorize(why, otypes=[object])(self.clear, self.image_clear, self.clearance_deg, self.image_pixel_deg)
+        return found if np.shape(self.clear) else found.item()
 
 
 @dataclass(frozen=True)
@@ -70,6 +89,15 @@ class Horizon:
     first_deg: object = None
     image_elevation_deg: object = None
     image_pixel_deg: object = None
+
+    @property
+    def image_difference_deg(self):
+        """By how much pictures show the horizon higher than rays find it [deg], (n,), NaN above the pictures; None unless the
+        method was "both". Up to image_pixel_deg is a pixel; more is distant ground that is drawn by coarser posts (a larger
+        level_size of the terrain makes it less)."""
+        if self.image_elevation_deg is None or np.isnan(self.distance).all():
+            return None
+        return np.where(self.elevation_deg > -90.0, self.image_elevation_deg - self.elevation_deg, np.nan)
 
     def elevation_at(self, azimuth_deg):
         """Returns the elevation [deg] at azimuths (a number or an array) [deg], linear between the horizon's own."""
