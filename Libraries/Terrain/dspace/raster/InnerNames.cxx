@@ -17,6 +17,7 @@
 namespace dspace {
 namespace {
 
+constexpr std::size_t StartBytes = 8192; // that tell what a file is: rasters are opened often
 constexpr std::size_t ChunkBytes = 4 << 20;
 constexpr std::size_t OverlapBytes = 4096;   // longer than any CRS text up to its file's name
 constexpr std::size_t LabelBytes = 64 << 20; // of a label that names the files with the pixels
@@ -28,28 +29,32 @@ struct CloseFile {
 // All of a file, in overlapping parts.
 class Parts {
 public:
-  explicit Parts(const std::string& path) : File_(VSIFOpenL(path.c_str(), "rb")) { this->Next(); }
+  explicit Parts(const std::string& path) : File_(VSIFOpenL(path.c_str(), "rb")) {
+    this->Read(StartBytes);
+  }
 
   const std::string& Text() const { return this->Text_; }
-  bool Next() {
+  bool Next() { return this->Read(ChunkBytes); }
+
+private:
+  bool Read(std::size_t bytes) {
     if (!this->File_) {
       return false;
     }
     this->Text_.erase(0, this->Text_.size() - std::min(this->Text_.size(), OverlapBytes));
     const std::size_t kept = this->Text_.size();
-    this->Text_.resize(kept + ChunkBytes);
-    const std::size_t got = VSIFReadL(&this->Text_[kept], 1, ChunkBytes, this->File_.get());
+    this->Text_.resize(kept + bytes);
+    const std::size_t got = VSIFReadL(&this->Text_[kept], 1, bytes, this->File_.get());
     this->Text_.resize(kept + got);
     return got > 0;
   }
 
-private:
   std::unique_ptr<VSILFILE, CloseFile> File_;
   std::string Text_;
 };
 
 bool IsLabel(const std::string& start) {
-  const std::string head = start.substr(0, 8192);
+  const std::string head = start.substr(0, StartBytes);
   return head.find("CCSD") != std::string::npos ||
          head.find("ODL_VERSION_ID") != std::string::npos ||
          head.find("PDS_VERSION_ID") != std::string::npos ||
@@ -61,7 +66,7 @@ bool MayHoldCrsText(const std::string& start) {
   if (start.compare(0, 15, "SQLite format 3") == 0) {
     return true;
   }
-  const std::string head = start.substr(0, 8192);
+  const std::string head = start.substr(0, StartBytes);
   const std::size_t first = head.find_first_not_of(" \t\r\n\xEF\xBB\xBF");
   const bool document = first != std::string::npos && (head[first] == '{' || head[first] == '<');
   return document ||
@@ -154,7 +159,7 @@ void CheckFileItself(const std::string& path) {
     std::size_t read = 0;
     do {
       CheckPointers(path, WithoutComments(parts.Text()));
-      read += ChunkBytes;
+      read += parts.Text().size();
     } while (read < LabelBytes && parts.Next());
   } else if (MayHoldCrsText(parts.Text())) {
     CheckCrsTexts(path, parts);
