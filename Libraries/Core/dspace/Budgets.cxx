@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint64_t Mebi = std::uint64_t(1) << 20;
 constexpr std::uint64_t Gibi = std::uint64_t(1) << 30;
-constexpr std::size_t BudgetCount = 10;
+constexpr std::size_t BudgetCount = 11;
 
 std::array<std::atomic<std::uint64_t>, BudgetCount>& BudgetValues() {
   static std::array<std::atomic<std::uint64_t>, BudgetCount> values;
@@ -53,7 +53,9 @@ const std::vector<BudgetInfo>& Budgets() {
       {Budget::OpenMemory, "open_memory", "the bytes that opening a netCDF or HDF5 file takes",
        512 * Mebi, Mebi, 1024 * Gibi},
       {Budget::TextureBytes, "texture_bytes", "the decoded bytes of the textures of one model",
-       512 * Mebi, 1, 1024 * Gibi}};
+       512 * Mebi, 1, 1024 * Gibi},
+      {Budget::OpenSeconds, "open_seconds", "the seconds that a raster is read while it is opened",
+       15, 1, 1000000}};
   return budgets;
 }
 

@@ -36,7 +36,8 @@ def grey_png(side):
 def test_limits_are_known(limits):
     assert limits == {"image_pixels": 128 << 20, "block_bytes": 256 << 20, "message_elements": 8 << 20,
                       "import_memory": 4 << 30, "import_seconds": 300, "raster_pixels": 1 << 50, "mosaic_files": 20000,
-                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20, "texture_bytes": 512 << 20}
+                      "mosaic_bytes": 64 << 20, "open_memory": 512 << 20, "texture_bytes": 512 << 20,
+                      "open_seconds": 15}
 
 
 def test_limits_are_set_together_or_not_at_all(limits):

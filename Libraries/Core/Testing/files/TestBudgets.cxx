@@ -36,7 +36,7 @@ TEST(Budgets, RejectWhatIsNoLimit) {
     EXPECT_EQ(std::string(error.what()),
               "limit 'pixels': there is no such limit; accepted: image_pixels, block_bytes, "
               "message_elements, import_memory, import_seconds, raster_pixels, mosaic_files, "
-              "mosaic_bytes, open_memory, texture_bytes");
+              "mosaic_bytes, open_memory, texture_bytes, open_seconds");
   }
   try {
     SetBudget("import_seconds", 0);

@@ -16,11 +16,14 @@
 #include <dspace/raster/ElevationMetadata.h>
 #include <dspace/raster/NetworkScope.h>
 #include <dspace/raster/OpenRaster.h>
+#include <dspace/raster/OpeningLimit.h>
 #include <dspace/raster/OverviewFile.h>
 
 namespace dspace {
 
 namespace {
+
+constexpr int RowsAtOnce = 16; // while an OpeningLimit lives
 
 const char* const Changed = "the file has changed since it was opened; open it again";
 
@@ -180,7 +183,15 @@ std::vector<double> ElevationSource::ReadReduced(const RasterWindow& w, int fact
                               lastColumn ? w.width - c * factor : columns * factor,
                               lastRow ? w.height - r * factor : rows * factor};
       const std::size_t at = static_cast<std::size_t>(r) * width + c;
-      this->ReadPart(part, columns, rows, width, heights.data() + at, mask.data() + at);
+      // A mosaic reads all of its sources in one call: in parts it can be stopped.
+      const int some = OpeningLimit::IsActive() ? std::min(rows, RowsAtOnce) : rows;
+      for (int done = 0; done < rows; done += some) {
+        const int take = std::min(some, rows - done);
+        const int pixels = part.height / rows; // a row
+        const std::size_t to = at + std::size_t(done) * width;
+        this->ReadPart({part.column, part.row + done * pixels, part.width, take * pixels}, columns,
+                       take, width, heights.data() + to, mask.data() + to);
+      }
     }
   const double datum =
       info.verticalDatum.kind == VerticalDatum::Kind::Radius ? info.verticalDatum.radius : 0.0;
@@ -311,9 +322,10 @@ void ElevationSource::ReadPixels(const RasterWindow& part, int columns, int rows
   GdalErrors errors;
   GDALRasterBand& band = *impl.band;
   const auto line = static_cast<GSpacing>(stride);
+  GDALRasterIOExtraArg argument = OpeningLimit::Argument();
   const CPLErr read =
       band.RasterIO(GF_Read, part.column, part.row, part.width, part.height, values, columns, rows,
-                    GDT_Float64, sizeof(double), line * GSpacing(sizeof(double)), nullptr);
+                    GDT_Float64, sizeof(double), line * GSpacing(sizeof(double)), &argument);
   // The mask knows no-data, alpha and the special pixels of each format.
   impl.suspect = read != CE_None || errors.Failed();
   if (!impl.suspect && impl.gaps) {
@@ -343,6 +355,7 @@ void ElevationSource::ReadPixels(const RasterWindow& part, int columns, int rows
                                  : impl.checksums->Check(band, part);
   if (!damage.empty())
     throw Error(Error::Kind::Corrupt, object, "cannot be read: " + damage);
+  OpeningLimit::Check(object);
   if (!impl.suspect)
     return;
   if (impl.remote)

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <dspace/Error.h>
+#include <dspace/raster/OpeningLimit.h>
 
 #include <dspace/posts/GridPosts.h>
 #include <dspace/posts/PostsBetween.h>
@@ -77,6 +78,7 @@ std::shared_ptr<GridTerrain> GridTerrain::Load(const std::string& path,
     throw Error(Error::Kind::InvalidArgument, name,
                 std::to_string(info.window.width) + " x " + std::to_string(info.window.height) +
                     " posts span no surface; at least 2 x 2 are needed");
+  const OpeningLimit limit;
   std::vector<double> heights = source.Read();
   for (std::string& warning : WarningsOfFill(heights, info))
     warnings.push_back(std::move(warning));

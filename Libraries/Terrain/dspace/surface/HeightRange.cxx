@@ -5,6 +5,7 @@
 
 #include <dspace/Error.h>
 #include <dspace/posts/HeightGrid.h>
+#include <dspace/raster/OpeningLimit.h>
 
 #include <dspace/surface/TerrainWarnings.h>
 
@@ -19,6 +20,7 @@ constexpr int Sampled = 512;                // else so many along the raster's l
 HeightRange FindHeightRange(const std::string& name, const ElevationSource& source,
                             const PostPlacement& placement, const Eigen::Affine2d& pixelToPost,
                             ElevationPyramid& pyramid) {
+  const OpeningLimit limit;
   const RasterWindow window = source.Info().window;
   HeightRange range;
   range.exact = std::int64_t(window.width) * window.height <= ReadWhole;

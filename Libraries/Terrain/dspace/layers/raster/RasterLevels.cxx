@@ -9,6 +9,7 @@
 #include <dspace/layers/raster/RasterOverviews.h>
 #include <dspace/layers/raster/RasterPixels.h>
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/OpeningLimit.h>
 
 namespace dspace {
 namespace {
@@ -249,6 +250,7 @@ void RasterLevels::ReadCells(RasterHandle& handle, const LevelWindow& window, fl
 std::array<double, 2> RasterLevels::FindRange(bool& exact) const {
   constexpr double Most = double(1 << 24); // pixels that are all looked at
   constexpr double Few = double(1 << 22);
+  const OpeningLimit limit;
   const double pixels = double(this->Width()) * this->Height();
   exact = pixels <= Most;
   int level = 0;

@@ -9,6 +9,7 @@
 #include <dspace/layers/raster/RasterOverviews.h>
 
 #include <dspace/raster/NetworkScope.h>
+#include <dspace/raster/OpeningLimit.h>
 
 namespace dspace {
 namespace {
@@ -57,6 +58,7 @@ void RasterPixels::Read(const RasterLevel& level, const RasterWindow& part, int 
   const std::size_t count = std::size_t(columns) * rows;
   GdalErrors errors;
   const auto check = [&](CPLErr result) {
+    OpeningLimit::Check(this->Object_);
     if (result == CE_None && !errors.Failed()) {
       return;
     }
@@ -81,8 +83,9 @@ void RasterPixels::Read(const RasterLevel& level, const RasterWindow& part, int 
   raw.samples.resize(count * std::size_t(pixel));
   std::uint8_t* to = raw.samples.data();
   const auto read = [&](GDALRasterBand* band) {
+    GDALRasterIOExtraArg argument = OpeningLimit::Argument();
     check(band->RasterIO(GF_Read, part.column, part.row, part.width, part.height, to, columns, rows,
-                         type, pixel, pixel * columns, nullptr));
+                         type, pixel, pixel * columns, &argument));
     to += size;
   };
   std::for_each(level.colors.begin(), level.colors.end(), read);
