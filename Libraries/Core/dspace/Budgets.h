@@ -21,7 +21,7 @@ enum class Budget {
                    // all, each as often as it is named: sources, their sources, and so on
   MosaicBytes,     // mosaic_bytes: of its document
   OpenMemory,      // open_memory: bytes that opening a netCDF or HDF5 file takes (OpeningProbe.h)
-  TextureBytes,    // texture_bytes: of all textures of one OBJ or glTF model, decoded
+  TextureBytes,    // texture_bytes: of all textures of one model, decoded
   OpenSeconds      // open_seconds: that a raster of another process is read while it is opened
 };
 

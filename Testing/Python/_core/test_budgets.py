@@ -104,13 +104,16 @@ def test_all_formats_can_be_read_apart(scene, tmp_path):
 
 
 @pytest.mark.parametrize("apart", [False, True])
-@pytest.mark.parametrize("kind", ["obj", "gltf"])
+@pytest.mark.parametrize("kind", ["obj", "gltf", "wrl"])
 def test_textures_of_a_model_together(limits, tmp_path, kind, apart):
     """Two textures of 64 x 64 grey pixels, decoded to the same bytes each."""
     for name in ("a", "b"):
         (tmp_path / f"{name}.png").write_bytes(grey_png(64))
     path = tmp_path / f"model.{kind}"
-    if kind == "obj":
+    if kind == "wrl":
+        path.write_text("#VRML V2.0 utf8\n" + "".join(
+            f'Shape {{ appearance Appearance {{ texture ImageTexture {{ url "{name}.png" }} }} geometry Box {{ }} }}\n' for name in "ab"))
+    elif kind == "obj":
         (tmp_path / "m.mtl").write_text("newmtl a\nmap_Kd a.png\nnewmtl b\nmap_Kd b.png\n")
         path.write_text("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl a\nf 1/1 2/1 3/1\nusemtl b\nf 1/1 2/1 3/1\n")
     else:

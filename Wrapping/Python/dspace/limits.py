@@ -18,7 +18,7 @@ def get():
     clock. raster_pixels: columns times rows of one raster. mosaic_files: files that a mosaic (VRT) makes be opened in all,
     each as often as it is named, in `dspace serve` and playback; mosaic_bytes: of its document.
     open_memory: bytes that opening a netCDF or HDF5 file takes, which is tried in a process apart first.
-    texture_bytes: of all textures of one OBJ or glTF model, decoded. open_seconds: that a raster of `dspace serve` or of a
+    texture_bytes: of all textures of one model, decoded. open_seconds: that a raster of `dspace serve` or of a
     recording is read while it is opened, for its range of heights or values.
     """
     lines = vtk.vtkDspaceSession.GetLimits().splitlines()

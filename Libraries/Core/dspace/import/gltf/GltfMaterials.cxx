@@ -6,8 +6,9 @@
 #include <cmath>
 #include <map>
 
-#include <dspace/Budgets.h>
 #include <dspace/import/files/ImageReader.h>
+#include <dspace/import/files/ImportFile.h>
+#include <dspace/import/files/TextureBudget.h>
 
 namespace dspace {
 
@@ -107,12 +108,7 @@ private:
       }
       this->Warnings_.push_back(where + " is left out: " + e.what());
     }
-    this->TextureBytes_ += image ? image->pixels.size() : 0;
-    if (this->TextureBytes_ > BudgetOf(Budget::TextureBytes)) {
-      this->Document_.Fail("its textures have " + std::to_string(this->TextureBytes_) +
-                               " bytes or more, decoded; " + BudgetText(Budget::TextureBytes),
-                           Error::Kind::Resource);
-    }
+    this->TextureBudget_.Add(image.get(), FileObject(this->Document_.Path()));
     this->Images_.emplace(index, image);
     return image;
   }
@@ -284,7 +280,7 @@ private:
   std::vector<std::string>& Warnings_;
   std::map<std::size_t, std::shared_ptr<const Image>> Images_;
   std::map<std::pair<const Image*, double>, std::shared_ptr<const Image>> AlphaVariants_;
-  std::size_t TextureBytes_ = 0;
+  TextureBudget TextureBudget_;
 };
 
 } // namespace

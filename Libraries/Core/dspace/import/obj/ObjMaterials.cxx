@@ -7,12 +7,12 @@
 
 #include <tiny_obj_loader.h>
 
-#include <dspace/Budgets.h>
 #include <dspace/Error.h>
 #include <dspace/import/files/ImageReader.h>
 
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
+#include <dspace/import/files/TextureBudget.h>
 #include <dspace/import/obj/ObjText.h>
 
 namespace dspace {
@@ -142,30 +142,27 @@ private:
       placement.scale[k] = std::isfinite(scale) ? scale : 1.0;
       placement.offset[k] = std::isfinite(offset) ? offset : 0.0;
     }
+    const Image* added = nullptr;
     try {
       const std::string path = ResolveReference(mtlPath, from.diffuse_texname);
       auto& image = this->Images_[path];
       if (!image) {
         image = ReadImage(path);
-        this->ImageBytes_ += image->pixels.size();
+        added = image.get();
       }
       material.texture = image;
     } catch (const Error& e) {
       this->Warnings_.push_back("material '" + material.name +
                                 "': its texture is left out: " + e.what());
     }
-    if (this->ImageBytes_ > BudgetOf(Budget::TextureBytes)) {
-      throw Error(Error::Kind::Resource, FileObject(this->ObjPath_),
-                  "its textures have " + std::to_string(this->ImageBytes_) +
-                      " bytes or more, decoded; " + BudgetText(Budget::TextureBytes));
-    }
+    this->TextureBudget_.Add(added, FileObject(this->ObjPath_));
   }
 
   const std::string& ObjPath_;
   std::vector<std::string>& Warnings_;
   ObjMaterials Out_;
   std::map<std::string, std::shared_ptr<const Image>> Images_;
-  std::size_t ImageBytes_ = 0;
+  TextureBudget TextureBudget_;
 };
 
 } // namespace

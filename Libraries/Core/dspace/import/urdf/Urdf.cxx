@@ -16,6 +16,7 @@
 
 #include <dspace/import/files/FileNames.h>
 #include <dspace/import/files/ImportFile.h>
+#include <dspace/import/files/TextureBudget.h>
 #include <dspace/import/urdf/UrdfText.h>
 
 namespace dspace {
@@ -390,6 +391,7 @@ private:
         } catch (const Error& e) {
           this->Warn("material '" + from.name + "': its texture is left out: " + e.what());
         }
+        this->TextureBudget_.Add(image.get(), FileObject(this->Path_));
         found = this->Images_.emplace(path, image).first;
       }
       material.texture = found->second;
@@ -445,6 +447,7 @@ private:
   std::map<std::string, int> LinkIndex_;
   std::vector<const urdf::Joint*> Sources_; // one a joint of Out_
   std::map<std::string, std::shared_ptr<const Image>> Images_;
+  TextureBudget TextureBudget_;
 };
 
 } // namespace

@@ -159,19 +159,20 @@ std::shared_ptr<const Image> VrmlBuilder::Texture(const VrmlFile& file,
                                                   const std::vector<std::string>& urls) {
   std::string reason;
   for (const std::string& url : urls) {
+    std::shared_ptr<const Image> image;
     try {
       const std::string path = ResolveReference(file.path, url);
       const auto found = this->Textures_.find(path);
-      if (found != this->Textures_.end() && found->second) {
-        return found->second;
+      if (found != this->Textures_.end()) {
+        return found->second; // null: it was reported before
       }
-      if (found == this->Textures_.end()) {
-        return this->Textures_[path] = ReadImage(path);
-      }
-      return nullptr; // it was reported before
+      image = this->Textures_[path] = ReadImage(path);
     } catch (const Error& e) {
       reason = reason.empty() ? e.what() : reason;
+      continue;
     }
+    this->TextureBudget_.Add(image.get(), FileObject(file.path));
+    return image;
   }
   if (!urls.empty()) {
     this->Warn(file, "textures are left out", List(urls),

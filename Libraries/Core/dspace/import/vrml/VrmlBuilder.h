@@ -6,6 +6,7 @@
 #include <dspace/import/vrml/VrmlFaces.h>
 
 #include <dspace/import/files/ModelReader.h>
+#include <dspace/import/files/TextureBudget.h>
 #include <dspace/import/model/Model.h>
 
 #include <cstdint>
@@ -68,6 +69,7 @@ private:
   std::map<std::string, VrmlFile> Files_; // by canonical path
   std::vector<std::string> OpenFiles_;    // being walked, outermost first
   std::map<std::string, std::shared_ptr<const Image>> Textures_;
+  TextureBudget TextureBudget_;
   std::map<Key, int> Meshes_; // -1: empty
   std::map<Key, int> Materials_;
   std::map<std::string, int> LeftOut_; // by type of node, of all files
