@@ -238,8 +238,8 @@ def add_terrain(scene, options):
         settings["image"] = options.image
     elif of_shipped_field(options):
         settings["image"] = DATA / "field" / "field_color.tif"
-    elif options.mode == "clipmap":
-        settings["color"] = (0.58, 0.54, 0.49)  # lit by the scene's sun; triangles show shaded relief
+    else:
+        settings["color"] = (0.58, 0.54, 0.49)
     if options.vertical_scale is not None:
         settings["vertical_scale"] = options.vertical_scale
     if options.pixel_size is not None:
