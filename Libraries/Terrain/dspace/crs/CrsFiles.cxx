@@ -119,7 +119,7 @@ bool CrsNamesFile(const std::string& crs) {
       return true;
     }
   }
-  const bool proj = text.find("+") == 0 || text.find("proj=") != std::string::npos;
+  const bool proj = text.rfind('+', 0) == 0 || text.find("proj=") != std::string::npos;
   std::error_code error;
   return text.empty() || std::string("/.@~\\").find(text[0]) != std::string::npos ||
          (proj && text.find('/') != std::string::npos) || std::filesystem::exists(crs, error);
