@@ -138,8 +138,9 @@ float horizonLit()
   float reach = (coarserShare(postPlace) > 0.0 ? 2.0 : 1.0) * nearPosts / length(way0);
   vec2 last0 = postPlace + reach * way0;
   vec2 last1 = postPlace + reach * way1;
-  if (any(lessThan(min(last0, last1), firstPost + 1.0)) ||
-    any(greaterThan(max(last0, last1), lastPost - 1.0)))
+  bool within = all(greaterThanEqual(min(last0, last1), firstPost + 1.0)) &&
+    all(lessThanEqual(max(last0, last1), lastPost - 1.0));
+  if (!within) // or no numbers
   {
     return lit;
   }

@@ -1,4 +1,5 @@
-// The posts of one clipmap level, in the vertex and the fragment shader.
+// The posts of one clipmap level, in the vertex shader and in fragment shaders that look at them.
+#if defined(DSPACE_POSTS) || defined(DSPACE_LEVELS) || (defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES))
 uniform sampler2DArray posts; // height, slopes a level-0 column and row, 1 in a hole, else tracks
 uniform int texelMask;
 uniform int level;
@@ -19,3 +20,4 @@ float coarserShare(vec2 at)
   vec2 away = abs(at - cameraPost);
   return clamp((max(max(away.x, away.y), blend.z) - blend.x) * blend.y, 0.0, 1.0);
 }
+#endif

@@ -129,6 +129,19 @@ TEST(CascadeFit, ALongLensHasTheTexelsOfAShortOne) {
   }
 }
 
+// A distance that the user gives ends the maps, also through a long lens.
+TEST(CascadeFit, AGivenDistanceEndsTheMapsOfALongLens) {
+  Projection projection;
+  projection.verticalFov_deg = 1.0;
+  ShadowLook look;
+  for (const double distance : {500.0, 2990.0, 3e4}) {
+    look.distance = distance;
+    const CascadeFit fit =
+        FitCascades(projection, 640, 480, SunFrom({1, 1, 1}), 2970.0, 3030.0, look);
+    EXPECT_DOUBLE_EQ(fit.cascades.back().end, distance);
+  }
+}
+
 // All maps of a parallel view have all of it; each resolves four times wider penumbrae, and sizes
 // do not change with small changes of what is seen.
 TEST(CascadeFit, MapsOfAParallelViewAreForEverWiderPenumbrae) {

@@ -5,11 +5,9 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <ogr_spatialref.h>
 
 #include <dspace/Error.h>
 #include <dspace/FilesRead.h>
-#include <dspace/crs/CrsFiles.h>
 #include <dspace/raster/InnerNames.h>
 
 #include "TemporaryFolder.h"
@@ -126,26 +124,6 @@ TEST(InnerNames, LooksBesideTheFile) {
   WriteText(folder / "b.prj", "+init=/outside:1"); // of another file
   EXPECT_EQ(InnerRejection(path), "");
   EXPECT_NE(InnerRejection(folder.Path()), ""); // a folder of shapefiles
-}
-
-TEST(CrsFiles, AreFoundInACrsThatWasRead) {
-  const TemporaryFolder folder;
-  const auto names = [](const std::string& text) {
-    OGRSpatialReference srs;
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    EXPECT_EQ(srs.SetFromUserInput(text.c_str()), OGRERR_NONE) << text;
-    CPLPopErrorHandler();
-    return CrsNamesFile(srs);
-  };
-  EXPECT_TRUE(names("+proj=longlat +ellps=bessel +nadgrids=/nowhere/a.gsb"));
-  EXPECT_TRUE(names("+proj=longlat +datum=WGS84 +geoidgrids=/nowhere/a.gtx +vunits=m"));
-  EXPECT_TRUE(names("+proj=longlat +ellps=bessel +nadgrids=@null,/nowhere/a.gsb"));
-  EXPECT_FALSE(names("EPSG:3857")); // "+nadgrids=@null" in WKT 1
-  EXPECT_FALSE(names("+proj=utm +zone=33 +ellps=GRS80 +nadgrids=@null"));
-  EXPECT_FALSE(names("EPSG:32633"));
-  EXPECT_FALSE(
-      names("+proj=longlat +ellps=bessel +towgs84=598.1,73.7,418.2,0.202,0.045,-2.455,6.7"));
-  EXPECT_FALSE(names("+proj=eqc +R=3396190"));
 }
 
 } // namespace

@@ -33,13 +33,14 @@ DeflateCheck::DeflateCheck(GDALDataset& dataset, GDALRasterBand& band) {
 DeflateCheck::~DeflateCheck() = default;
 
 bool DeflateCheck::IsIntact(GDALRasterBand& band, int column, int row) {
-  const TiffBlock place = FindTiffBlock(band, column, row);
-  if (place.offset == 0 || place.size < 6 || place.size > 2 * this->Bytes_ + 4096) {
+  const std::uint64_t offset = TiffBlockOffset(band, column, row);
+  const std::uint64_t size = offset != 0 ? TiffBlockSize(band, column, row) : 0;
+  if (size < 6 || size > 2 * this->Bytes_ + 4096) {
     return true; // left out, or none that libtiff would take
   }
   auto* file = static_cast<VSILFILE*>(this->File_.get());
-  std::vector<unsigned char> stream(static_cast<std::size_t>(place.size));
-  if (VSIFSeekL(file, place.offset, SEEK_SET) != 0 ||
+  std::vector<unsigned char> stream(static_cast<std::size_t>(size));
+  if (VSIFSeekL(file, offset, SEEK_SET) != 0 ||
       VSIFReadL(stream.data(), 1, stream.size(), file) != stream.size()) {
     return false;
   }

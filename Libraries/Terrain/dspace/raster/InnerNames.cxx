@@ -20,7 +20,7 @@ namespace {
 constexpr std::size_t StartBytes = 8192; // that tell what a file is: rasters are opened often
 constexpr std::size_t ChunkBytes = 4 << 20;
 constexpr std::size_t OverlapBytes = 4096;   // longer than any CRS text up to its file's name
-constexpr std::size_t LabelBytes = 64 << 20; // of a label that names the files with the pixels
+constexpr std::size_t LabelBytes = 16 << 20; // of a label that names the files with the pixels
 
 struct CloseFile {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }

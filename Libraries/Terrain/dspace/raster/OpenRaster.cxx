@@ -42,8 +42,8 @@ int Coverage(GDALRasterBand& band, TiffBlocks tiff, const RasterWindow& w, int u
   int status = 0;
   for (int y = w.row / blockY; y <= (w.row + w.height - 1) / blockY; ++y) {
     for (int x = w.column / blockX; x <= (w.column + w.width - 1) / blockX; ++x) {
-      status |= FindTiffBlock(band, x, y).offset != 0 ? GDAL_DATA_COVERAGE_STATUS_DATA
-                                                      : GDAL_DATA_COVERAGE_STATUS_EMPTY;
+      status |= TiffBlockOffset(band, x, y) != 0 ? GDAL_DATA_COVERAGE_STATUS_DATA
+                                                 : GDAL_DATA_COVERAGE_STATUS_EMPTY;
       if (status & until) {
         return status;
       }

@@ -3,6 +3,14 @@
 #include <cpl_string.h>
 
 namespace dspace {
+namespace {
+
+std::uint64_t Item(GDALRasterBand& band, const char* what, int column, int row) {
+  const char* text = band.GetMetadataItem(CPLSPrintf("BLOCK_%s_%d_%d", what, column, row), "TIFF");
+  return text ? CPLScanUIntBig(text, 24) : 0;
+}
+
+} // namespace
 
 TiffBlocks TiffBlocksOf(GDALRasterBand& band) {
   GDALDataset* dataset = band.GetDataset();
@@ -17,16 +25,12 @@ TiffBlocks TiffBlocksOf(GDALRasterBand& band) {
   return height > 1 || !bits || !EQUAL(bits, "1") ? TiffBlocks::Known : TiffBlocks::Unknown;
 }
 
-TiffBlock FindTiffBlock(GDALRasterBand& band, int column, int row) {
-  const auto item = [&](const char* what) -> std::uint64_t {
-    const char* text =
-        band.GetMetadataItem(CPLSPrintf("BLOCK_%s_%d_%d", what, column, row), "TIFF");
-    return text ? CPLScanUIntBig(text, 24) : 0;
-  };
-  TiffBlock block;
-  block.offset = item("OFFSET");
-  block.size = block.offset != 0 ? item("SIZE") : 0;
-  return block;
+std::uint64_t TiffBlockOffset(GDALRasterBand& band, int column, int row) {
+  return Item(band, "OFFSET", column, row);
+}
+
+std::uint64_t TiffBlockSize(GDALRasterBand& band, int column, int row) {
+  return Item(band, "SIZE", column, row);
 }
 
 } // namespace dspace

@@ -9,20 +9,17 @@
 namespace dspace {
 
 enum class TiffBlocks {
-  Known,   // FindTiffBlock works
+  Known,   // TiffBlockOffset and TiffBlockSize work
   Unknown, // a bitmap of one strip: GDAL gives the strip line by line, and a question about a line
            // makes GDAL's band unusable
   NoTiff,  // another format
 };
 TiffBlocks TiffBlocksOf(GDALRasterBand& band);
 
-struct TiffBlock {
-  std::uint64_t offset = 0; // bytes from the start of the file; 0: the file leaves the block out
-  std::uint64_t size = 0;   // bytes, as stored
-};
-
-// Of a band whose blocks are Known. Reads no pixels.
-TiffBlock FindTiffBlock(GDALRasterBand& band, int column, int row);
+// Of a block of a band whose blocks are Known: bytes from the start of the file, 0 where the file
+// leaves the block out; and its bytes, as stored. They read no pixels.
+std::uint64_t TiffBlockOffset(GDALRasterBand& band, int column, int row);
+std::uint64_t TiffBlockSize(GDALRasterBand& band, int column, int row);
 
 // While it lives, TIFFs that this thread opens give each strip as one block. Without it, GDAL
 // splits a strip that covers the whole file into lines, which hides its size.

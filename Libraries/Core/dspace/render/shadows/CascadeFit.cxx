@@ -90,14 +90,14 @@ CascadeFit FitCascades(const Projection& projection, int width, int height, cons
                      Reach * first);
   const CornerRays rays(projection, width, height);
   double start = parallel ? nearest : 0.0;
-  if (!parallel && nearest > LongLens * farthest) {
+  const bool reaches = look.distance == 0.0 || look.distance > nearest;
+  if (!parallel && nearest > LongLens * farthest && reaches) {
     // Up to what it looks at, a camera with a long lens sees nothing that takes shadows: the maps
     // begin there, in steps of a part of what it sees.
     const double step = std::exp2(std::floor(std::log2(std::max(farthest - nearest, 1e-3)))) / 8.0;
     start = (std::floor(nearest / step) - 1.0) * step;
     first = start;
-    last = look.distance > 0.0 ? std::max(last, start + step)
-                               : (std::ceil(farthest / step) + 1.0) * step;
+    last = look.distance > 0.0 ? look.distance : (std::ceil(farthest / step) + 1.0) * step;
   }
   for (int k = 0; k < look.cascades; ++k) {
     CascadeFit::Cascade cascade;

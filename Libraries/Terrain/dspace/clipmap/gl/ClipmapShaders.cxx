@@ -4,6 +4,7 @@
 
 #include "ClipmapColor_frag.h"
 #include "ClipmapDetails_frag.h"
+#include "ClipmapHead_vert.h"
 #include "ClipmapHorizon_frag.h"
 #include "ClipmapLayers_frag.h"
 #include "ClipmapLevels_frag.h"
@@ -26,8 +27,8 @@ namespace {
 
 // `standing` says where posts stand.
 std::string ComposeVertexShader(const char* standing) {
-  return std::string("#version 330 core\n//DSPACE::Defines\n") + ClipmapTexels + ClipmapPosts_vert +
-         ClipmapStanding_vert + standing + ClipmapLook_vert + ClipmapStyle_vert + Clipmap_vert;
+  return std::string(ClipmapHead_vert) + ClipmapTexels + ClipmapPosts_vert + ClipmapStanding_vert +
+         standing + ClipmapLook_vert + ClipmapStyle_vert + Clipmap_vert;
 }
 
 } // namespace
@@ -48,11 +49,10 @@ const char* ClipmapVertexShader(PostPlacement::Kind kind) {
 }
 
 const char* ClipmapFragmentFunctions() {
-  static const std::string functions =
-      "#if defined(DSPACE_LEVELS) || (defined(DSPACE_HORIZON) && defined(DSPACE_ANGLES))\n" +
-      std::string(ClipmapTexels) + "#endif\n" + ClipmapStyle_frag + ClipmapPole_frag +
-      ClipmapLayers_frag + ClipmapDetails_frag + ClipmapRamp_frag + ClipmapLevels_frag +
-      ClipmapLines_frag + ClipmapHorizon_frag + ClipmapColor_frag;
+  static const std::string functions = std::string(ClipmapTexels) + ClipmapStyle_frag +
+                                       ClipmapPole_frag + ClipmapLayers_frag + ClipmapDetails_frag +
+                                       ClipmapRamp_frag + ClipmapLevels_frag + ClipmapLines_frag +
+                                       ClipmapHorizon_frag + ClipmapColor_frag;
   return functions.c_str();
 }
 

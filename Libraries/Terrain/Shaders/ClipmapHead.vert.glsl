@@ -1,0 +1,3 @@
+#version 330 core
+//DSPACE::Defines
+#define DSPACE_POSTS
