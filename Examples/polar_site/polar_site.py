@@ -149,7 +149,8 @@ def maps(scene, terrain, out, start, spacing):
     horizons = scene.horizon_map(terrain, out / "horizons.tif", height=MAST, azimuths=180, cell_size=max(5.0 * spacing, 100.0),
                                  extent=(-reach, reach, reach, -reach), replace=True)
     light = scene.illumination_map(horizons, out / "light.tif", start=start, end=start + 29.53 * 86400.0, step=7200.0,
-                                   quantities=("lit_fraction", "longest_night", "earth_fraction"), terrain=terrain, replace=True)
+                                   quantities=("lit_fraction", "longest_night", "station_fraction"), stations=list(STATIONS.values()),
+                                   station_mask=10.0, terrain=terrain, replace=True)
     return gdal.Open(str(light.path)).ReadAsArray(), (-reach, reach, -reach, reach)
 
 
@@ -196,7 +197,7 @@ def draw_power(figure, profile):
 def draw_maps(figure, made, site):
     bands, edges = made
     for axes, values, name, colors in zip(figure.subplots(1, 3), (100.0 * bands[0], bands[1] / 3600.0, 100.0 * bands[2]),
-                                          ("lit [%]", "longest night [h]", "Earth in view [%]"), ("inferno", "viridis_r", "cividis")):
+                                          ("lit [%]", "longest night [h]", "direct to Earth [%]"), ("inferno", "viridis_r", "cividis")):
         shown = axes.imshow(values, extent=[0.001 * edge for edge in edges], cmap=colors)
         axes.plot(0.001 * site[0], 0.001 * site[1], "+", color="#30d0ff", markersize=10)
         axes.set(xlabel="map x [km]", title=name)

@@ -55,3 +55,13 @@ def write_raster(path, z, pixel=1.0):
     data.GetRasterBand(1).SetUnitType("m")
     data.GetRasterBand(1).WriteArray(z)
     return path
+
+
+def write_georeferenced(path, z, geotransform, projection):
+    """A GeoTIFF of heights (rows from the north on) in a CRS, above its sphere."""
+    data = gdal.GetDriverByName("GTiff").Create(str(path), z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
+    data.SetGeoTransform(geotransform)
+    data.SetProjection(projection)
+    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
+    data.GetRasterBand(1).WriteArray(z)
+    return path

@@ -57,6 +57,18 @@ float discCosine(float c, vec2 disc)
 }
 #endif
 
+#if defined(DSPACE_SHADOWED) && !defined(DSPACE_HORIZON)
+// Triangles hide the light that smooth normals let in, each as a whole or in stripes of the shadow maps.
+// Light falls to nothing where it grazes the triangle. planeVC: its normal, of any length; cosines with
+// the light of the smooth normal N and of the triangle.
+// M. Chiang, Y. K. Li, B. Burley, "Taming the Shadow Terminator", SIGGRAPH Talks (2019).
+float terminator(vec3 N, vec3 planeN, float smoothCosine, float planeCosine)
+{
+  float g = clamp(planeCosine / max(smoothCosine * dot(N, planeN), 1e-5), 0.0, 1.0);
+  return g * (1.0 + g - g * g);
+}
+#endif
+
 #ifdef DSPACE_LIT
 // The light that a surface of this colour sends to the camera, linear. N: unit, view axes.
 // surface: metallic, roughness.
@@ -117,6 +129,15 @@ vec3 shaded(vec3 color, vec3 N, vec3 positionVC, vec2 surface)
     {
       litBySun = sunLit(positionVC, planeVC);
       radiance *= litBySun;
+#ifndef DSPACE_HORIZON
+      vec3 planeN = normalize(planeVC);
+      planeN = dot(planeN, N) < 0.0 ? -planeN : planeN;
+#ifdef DSPACE_DISC_LIGHTS
+      radiance *= terminator(N, planeN, NdL, discCosine(dot(planeN, L), lightDisc[i]));
+#else
+      radiance *= terminator(N, planeN, NdL, max(dot(planeN, L), 0.0));
+#endif
+#endif
     }
 #endif
 #ifdef DSPACE_ECLIPSES

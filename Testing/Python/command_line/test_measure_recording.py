@@ -60,6 +60,27 @@ def test_lines_between_frames_and_sites(capsys, recording, tmp_path):
     assert run(capsys, *los, "--out", tmp_path / "lines.png")[0] == 0
 
 
+def test_lines_over_a_span(capsys, recording, tmp_path):
+    """The mast is behind the wall until 10 s; then it looks over it. Its elevation from the far frame is 31 degrees."""
+    los = ("los", "--recording", recording, "--from", "base/far", "--to", "base/mast", "--to", "150.5,20.5,9", "--time", "0,20,3")
+    code, out, err = run(capsys, *los)
+    assert code == 0, err
+    assert "base/far to base/mast: clear from 10.0" in out and "still at 20.000 s" in out
+    assert "base/far to base/mast: clear 9.99" in out and "base/far to 150.5,20.5,9: clear 20.000 s, 100.00 % of the time" in out
+    found = json.loads(run(capsys, *los, "--mask", 20, "--out", tmp_path / "span.csv", "--json")[1])
+    assert [row["to_frame"] for row in found["contacts"]] == ["base/mast", None]
+    assert found["contacts"][0]["set_elevation_deg"] == pytest.approx(np.degrees(np.arctan2(60.0, 100.0)), abs=1e-6)
+    assert found["contacts"][0]["set_azimuth_deg"] == pytest.approx(270.0, abs=1e-6)
+    assert [float(row["duration_s"]) for row in csv.DictReader(open(tmp_path / "span.csv"))] == pytest.approx([10.0, 20.0], abs=0.011)
+    for wrong, text in ((("--time", "0,40"), "runs from 0 to 20 s"), (("--time", "0,20", "--at", "3"), "without --at"),
+                        (("--time", "x"), "accepted: T0,T1"), (("--time", "0,20", "--wavelength", "1"), "without --wavelength"),
+                        (("--mask", "5"), "accepted: with --time")):
+        code, _, err = run(capsys, *los[:-2], *wrong)
+        assert code != 0 and text in err, wrong
+    needs_module("matplotlib", "python3-matplotlib")
+    assert run(capsys, *los, "--out", tmp_path / "span.png")[0] == 0
+
+
 def test_horizons_of_frames(capsys, recording, tmp_path):
     for at, height in ((0, 2.0), (20, 62.0)):
         code, out, err = run(capsys, "horizon", "--recording", recording, "--at", at, "--frame", "base/mast", "--azimuths", 4, "--json")

@@ -61,7 +61,8 @@ def test_horizons_over_gale(scene, gale):
         np.testing.assert_allclose(horizon.image_difference_deg[seen], (horizon.image_elevation_deg - horizon.elevation_deg)[seen])
         alone = scene.horizon(gale.site(*site), 2880, method="image", resolution=1024)
         assert alone.image_difference_deg is None
-        assert np.array_equal(alone.elevation_deg, horizon.image_elevation_deg) and np.isnan(alone.distance).all()
+        assert np.array_equal(alone.elevation_deg, horizon.image_elevation_deg) and np.array_equal(alone.distance, horizon.image_distance)
+        assert alone.method == "image" and horizon.method == "both"
 
 
 def test_a_post_half_a_metre_high_flips_both(scene, tmp_path):
@@ -103,6 +104,15 @@ def test_objects_count_and_what_is_left_out_does_not(scene):
     assert horizon.elevation_deg[1] == pytest.approx(np.degrees(np.arctan2(0.5, 4.5)), abs=1e-6)
     assert horizon.image_elevation_deg[1] == pytest.approx(horizon.elevation_deg[1], abs=horizon.image_pixel_deg)
     assert list(horizon.image_elevation_deg[[0, 2, 3]]) == [-90.0] * 3
+    # Where the pictures were taken from and towards: north, east, south, west, with Z forward and Y down. The box's upper edge
+    # is 4.5 m east and 0.5 m up, and is seen by the middle of a pixel below it.
+    forward = [pose.matrix[:3, 2].tolist() for pose in horizon.image_cameras]
+    np.testing.assert_allclose(forward, [(0, 1, 0), (1, 0, 0), (0, -1, 0), (-1, 0, 0)], atol=1e-12)
+    np.testing.assert_allclose([pose.matrix[:3, 1] for pose in horizon.image_cameras], [(0, 0, -1)] * 4, atol=1e-12)
+    assert max(np.abs(pose.position).max() for pose in horizon.image_cameras) < 1e-5
+    np.testing.assert_allclose(horizon.image_point[1], (4.5, 0.0, 0.5), atol=0.012)
+    assert horizon.image_distance[1] == pytest.approx(np.hypot(4.5, 0.5), abs=2e-3)
+    assert np.isinf(horizon.image_distance[[0, 2, 3]]).all() and np.isnan(horizon.image_point[[0, 2, 3]]).all()
 
 
 def test_the_projected_area_of_a_cube(scene):

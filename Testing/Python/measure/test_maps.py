@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import dspace
-from terrain_support import gdal, write_raster
+from terrain_support import gdal, write_georeferenced, write_raster
 
 R = 1737400.0
 SUN_RADIUS = 695700e3
@@ -19,15 +19,6 @@ def hills(rows=120, columns=130):
 @pytest.fixture
 def ground(scene, tmp_path):
     return scene.add_terrain(write_raster(tmp_path / "ground.tif", hills()), name="ground", pixel_size=1.0)
-
-
-def write_georeferenced(path, z, geotransform, projection):
-    data = gdal.GetDriverByName("GTiff").Create(str(path), z.shape[1], z.shape[0], 1, gdal.GDT_Float32)
-    data.SetGeoTransform(geotransform)
-    data.SetProjection(projection)
-    data.SetMetadataItem("VERTICAL_DATUM", "sphere")
-    data.GetRasterBand(1).WriteArray(z)
-    return path
 
 
 def test_horizons_of_cells(scene, ground, tmp_path):
@@ -58,7 +49,7 @@ def test_interrupted_maps_continue(scene, ground, tmp_path):
         scene.horizon_map(ground, path, azimuths=240, threads=1, progress=stop)
     assert not path.exists()
     with pytest.raises(dspace.DeadlineExceeded, match="the same call continues it"):
-        scene.horizon_map(ground, path, azimuths=240, threads=1, deadline=0.01)
+        scene.horizon_map(ground, tmp_path / "late.tif", azimuths=3600, threads=1, deadline=0.01)
     if pathlib.Path(f"{path}.part").exists():
         with pytest.raises(dspace.AlreadyExists, match="other inputs"):
             scene.horizon_map(ground, path, azimuths=240, height=1.0)
@@ -67,7 +58,7 @@ def test_interrupted_maps_continue(scene, ground, tmp_path):
     with pytest.raises(dspace.AlreadyExists, match="it exists"):
         scene.horizon_map(ground, path, azimuths=240)
     assert len(scene.horizon_map(ground, path, azimuths=3, replace=True).bands) == 3
-    assert sorted(file.name for file in tmp_path.iterdir() if ".part" in file.name) == []
+    assert [file.name for file in tmp_path.iterdir() if ".part" in file.name and "late" not in file.name] == []
 
 
 def test_viewsheds_and_lines(scene, ground, tmp_path):
@@ -305,3 +296,24 @@ def test_other_rejected_maps(scene, ground, tmp_path, refused):
         scene.illumination_map(tmp_path / "ground.tif", tmp_path / "lit.tif", sun=[(1e11, 0, 0)])
     lit = scene.illumination_map(horizons, tmp_path / "lit.tif", sun=[(1e11, 0, 9e10), (0, 1e11, -1e9)])
     assert lit.read("lit_fraction") == pytest.approx(np.full((120, 130), 0.5), abs=0.5)
+
+
+def test_areas_of_cells(scene, tmp_path):
+    """Cells of a degree grid by the closed form of a sphere; those of a polar stereographic map by its scale at each latitude."""
+    moon = f'GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",0.0174532925199433]]'
+    path = write_georeferenced(tmp_path / "moon.tif", np.zeros((40, 30), np.float32), (10, 0.5, 0, 85.0, 0, -0.5), moon)
+    degrees = scene.horizon_map(scene.add_terrain(path, name="degrees", on_body=True), tmp_path / "degrees_h.tif", azimuths=4)
+    step = -degrees.geotransform[5]
+    north = np.radians(degrees.geotransform[3] - step * np.arange(degrees.rows + 1))
+    bands = R**2 * np.radians(step) * -np.diff(np.sin(north))
+    np.testing.assert_allclose(degrees.areas(), np.repeat(bands[:, None], degrees.columns, axis=1), rtol=1e-4)
+    polar = (f'PROJCS["p",{moon},PROJECTION["Polar_Stereographic"],PARAMETER["latitude_of_origin",-90],'
+             'PARAMETER["central_meridian",0],PARAMETER["false_easting",0],PARAMETER["false_northing",0],UNIT["metre",1]]')
+    path = write_georeferenced(tmp_path / "polar.tif", np.zeros((60, 80), np.float32), (-30000, 1000, 0, 40000, 0, -1000), polar)
+    made = scene.horizon_map(scene.add_terrain(path, name="polar", on_body=True), tmp_path / "polar_h.tif", azimuths=4)
+    x0, size, _, y0, _, _ = made.geotransform
+    x, y = np.meshgrid(x0 + size * (np.arange(made.columns) + 0.5), y0 - size * (np.arange(made.rows) + 0.5))
+    scale = 1.0 + (x**2 + y**2) / (4.0 * R**2)  # rho = 2 R tan(c / 2): k = 1 / cos(c / 2)^2
+    np.testing.assert_allclose(made.areas(), size**2 / scale**2, rtol=1e-5)
+    lit = scene.illumination_map(made, tmp_path / "lit.tif", sun=[(0.0, 0.0, 1.5e11)], quantities="permanent_shadow")
+    assert np.nansum(lit.areas() * lit.read(0)) == pytest.approx((size**2 / scale**2).sum(), rel=1e-5)

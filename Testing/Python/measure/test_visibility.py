@@ -7,6 +7,8 @@ import pytest
 
 import dspace
 import needs
+from dspace.trajectories import Conic, States
+from terrain_support import write_georeferenced
 
 DATA = pathlib.Path(os.environ.get("DSPACE_DATA", "/nonexistent")) / "ephemeris"
 KERNELS = DATA / "spice_test_kernels"
@@ -238,3 +240,128 @@ def test_bad_input(scene):
         scene.power_profile(place, dspace.Panel(), 0.0, 1e5, battery=dspace.Battery(0.0))
     with pytest.raises(dspace.DeadlineExceeded, match="longer than its deadline"):
         scene.contacts(place, "sun", 0.0, 1e8, step=60.0, deadline=0.05)
+
+
+MOON_MU = 4.9028e12  # [m^3/s^2]
+ORBIT = 1837400.0  # [m] radius
+
+
+def circular(t):
+    """A circular orbit about the Moon near its poles, J2000: positions and velocities."""
+    rate = np.sqrt(MOON_MU / ORBIT**3)
+    a, b = np.array([1.0, 0.0, 0.0]), np.array([0.0, -0.39, 0.92]) / np.hypot(0.39, 0.92)
+    turn = rate * (np.asarray(t)[..., None] - START)
+    return ORBIT * (a * np.cos(turn) + b * np.sin(turn)), ORBIT * rate * (b * np.cos(turn) - a * np.sin(turn))
+
+
+def write_oem(path, times, utc):
+    lines = ["CCSDS_OEM_VERS = 2.0", "CREATION_DATE = 2026-01-01T00:00:00", "ORIGINATOR = TEST", "META_START", "OBJECT_NAME = CRAFT",
+             "OBJECT_ID = 2026-001A", "CENTER_NAME = MOON", "REF_FRAME = EME2000", "TIME_SYSTEM = TDB", f"START_TIME = {utc[0]}",
+             f"STOP_TIME = {utc[-1]}", "INTERPOLATION = HERMITE", "INTERPOLATION_DEGREE = 7", "META_STOP"]
+    for at, p, v in zip(utc, *circular(times)):
+        lines.append(" ".join([at, *(f"{x / 1000.0:.12f}" for x in (*p, *v))]))
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def test_orbiters_rise_by_the_closed_form(sky, tmp_path):
+    """A circular polar orbit over a lunar site for a day: skyfield has the site, the formula the craft. Geometric directions differ
+    by the craft's velocity over that of light, 0.0003 degrees. As a Conic, an OEM, a frame that moves along a trajectory, and a
+    frame that hangs on it."""
+    scene, _, planets, timescale, site = sky
+    place = dspace.BodySite("moon", *LUNAR)
+    end = START + 86400.0
+
+    def elevation(seconds):
+        at = (site - planets["moon"]).at(julian(timescale, seconds)).position.m.T
+        away = circular(seconds)[0] - at
+        return np.degrees(np.arcsin(np.einsum("ni,ni->n", at, away) / np.linalg.norm(at, axis=1) / np.linalg.norm(away, axis=1)))
+    coarse = np.arange(START, end + 1.0, 10.0)
+    up = elevation(coarse) > 5.0
+    expected = []
+    for i in np.flatnonzero(up[1:] != up[:-1]):
+        fine = np.linspace(coarse[i], coarse[i + 1], 1001)
+        expected.append(fine[np.flatnonzero(np.diff(elevation(fine) > 5.0))[0]])
+    assert len(expected) >= 20
+    conic = Conic(circular(START)[0], circular(START)[1], MOON_MU, START)
+    times = np.arange(START, end + 1.0, 60.0)
+    texts = [scene.time_text(t, scale="TDB", decimals=6).replace(" TDB", "") for t in times]
+    moon = scene.add_celestial_frame("moon", "moon", center="earth")
+    inertial = scene.add_celestial_frame("inertial", "moon", axes="J2000", parent=moon)
+    path = scene.add_trajectory(States(times, *circular(times)), frame=inertial, name="path")
+    craft = path.add_frame("craft")
+    antenna = craft.add_frame("antenna", position=(0.0, 0.0, 1.0))
+    targets = [dspace.Orbiter(conic, "moon"), dspace.Orbiter(write_oem(tmp_path / "craft.oem", times, texts)), craft, antenna.path,
+               dspace.Orbiter(path, 301, "J2000")]
+    found = scene.contacts(place, targets, START, end, step=60.0, mask=5.0)
+    for target in targets:
+        mine = edges([c for c in found if c.target is target])
+        assert len(mine) == len(expected) and np.abs(mine - expected).max() < 0.05, target
+    track = scene.sky_track(place, targets[1], times[5:-5])
+    assert np.abs(track.elevation_deg - elevation(times[5:-5])).max() < 1e-3
+    # From the craft the site is as far as the craft from the site, but for what the craft moves while the light is on its way.
+    ground = scene.add_celestial_frame("ground", "moon", site=LUNAR, parent=moon)
+    there, back = scene.sky_track(ground, craft, times[5:-5]), scene.sky_track(craft, ground, times[5:-5])
+    assert np.abs(there.elevation_deg - track.elevation_deg).max() < 1e-6
+    assert 0.1 < np.abs(back.range - there.range).max() < 30.0
+
+
+def test_orbiters_and_frames_that_do_not_suit_are_rejected(scene):
+    place = dspace.BodySite("moon", 0.0, 0.0)
+    states = States([0.0, 60.0, 120.0], [[2e6, 0, 0], [2e6, 1e5, 0], [2e6, 2e5, 0]])
+    with pytest.raises(dspace.InvalidArgument, match="neither it nor its path names the body"):
+        scene.contacts(place, dspace.Orbiter(states), 0.0, 60.0)
+    with pytest.raises(dspace.NotFound, match="NO_AXES"):
+        scene.contacts(place, dspace.Orbiter(states, "moon", "NO_AXES"), 0.0, 60.0)
+    with pytest.raises(dspace.InvalidArgument, match="no state is known at .* accepted: times from 0 to 120 s"):
+        scene.contacts(place, dspace.Orbiter(states, "moon"), 0.0, 600.0)
+    assert 2e6 - 1737400.0 < scene.sky_track(place, dspace.Orbiter(states, "moon"), 0.0).range < 2e6 + 1737400.0  # light of before 0 s
+    scene.add_frame("loose")
+    with pytest.raises(dspace.InvalidArgument, match="it follows no body"):
+        scene.contacts(place, "/loose", 0.0, 60.0)
+    moon = scene.add_celestial_frame("moon", "moon", center="moon")
+    path = scene.add_trajectory(states, frame=moon, name="path")
+    craft = path.add_frame("craft")
+    with pytest.raises(dspace.InvalidArgument, match="its place moves along a trajectory"):
+        scene.power_profile(craft, dspace.Panel(), 0.0, 60.0, step=10.0)
+    with pytest.raises(dspace.InvalidArgument, match="the distance between the place and the target"):
+        scene.contacts(craft, craft, 0.0, 60.0)
+
+
+@pytest.mark.parametrize("on_body", (True, False), ids=("body", "plane"))
+def test_direct_to_earth_maps_are_skyfields(sky, tmp_path, on_body):
+    """The time that one of three stations has a cell in sight, over a horizon that the map measured: directions by skyfield, ten days
+    of hours. The sum of the stations', and the Earth without stations, would be others."""
+    scene, api, planets, timescale, site = sky
+    lat, lon = np.mgrid[LUNAR[1] + 0.1:LUNAR[1] - 0.1:-0.005, LUNAR[0] - 1.0:LUNAR[0] + 1.0:0.05]
+    z = 15.0 * np.sin(9.0 * lon + 150.0 * lat)
+    moon = 'GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",1737400,0]],PRIMEM["Reference",0],UNIT["degree",0.0174532925199433]]'
+    path = write_georeferenced(tmp_path / "moon.tif", z.astype(np.float32), (LUNAR[0] - 1.025, 0.05, 0, LUNAR[1] + 0.1025, 0, -0.005), moon)
+    terrain = scene.add_terrain(path, name="moon", on_body=on_body)
+    horizons = scene.horizon_map(terrain, tmp_path / "horizons.tif", height=2.0, azimuths=240)
+    places = ((-116.89, 35.4267, 970.0), (148.98, -35.4, 690.0), (-4.25, 40.43, 830.0))
+    stations = [dspace.BodySite("earth", *place, geodetic=True) for place in places]
+    steps = 240
+    made = scene.illumination_map(horizons, tmp_path / "link.tif", start=START, end=START + (steps - 0.5) * 3600.0, step=3600.0,
+                                  quantities=("station_fraction", "earth_fraction"), stations=stations, station_mask=25.0)
+    column, row = made.columns // 2, made.rows // 2
+    t = julian(timescale, START + 3600.0 * np.arange(steps))
+    line = horizons.horizon(column, row).astype(float)
+    line = line if on_body else np.maximum(line, 0.0)
+    linked, each = np.zeros(steps, bool), []
+    for longitude, latitude, height in places:
+        station = planets["earth"] + api.wgs84.latlon(latitude, longitude, elevation_m=height)
+        altitude, azimuth, _ = site.at(t).observe(station).apparent().altaz()
+        floor = np.interp(azimuth.degrees, 1.5 * np.arange(240), line, period=360.0)
+        each.append((altitude.degrees >= floor) & (station.at(t).observe(site).apparent().altaz()[0].degrees >= 25.0))
+        linked |= each[-1]
+    got = made.read("station_fraction")
+    assert got[row, column] == pytest.approx(linked.mean(), abs=2.1 / steps)
+    assert 0.1 < linked.mean() < 0.9 and np.sum([e.mean() for e in each]) > linked.mean() + 0.02
+    assert made.read("earth_fraction")[row, column] > linked.mean() + 0.02
+    with pytest.raises(dspace.InvalidArgument, match="it has 0 stations; accepted: 1 to 100"):
+        scene.illumination_map(horizons, tmp_path / "no.tif", start=START, end=START + 3600.0, quantities="station_fraction")
+    with pytest.raises(dspace.InvalidArgument, match="accepted: none without STATION_FRACTION"):
+        scene.illumination_map(horizons, tmp_path / "no.tif", start=START, end=START + 3600.0, stations=stations)
+    with pytest.raises(dspace.WrongType, match="a dspace.BodySite on the Earth"):
+        scene.illumination_map(horizons, tmp_path / "no.tif", start=START, end=START + 3600.0, stations=["earth"])

@@ -41,7 +41,7 @@ _HOMES = {
     "Orbit": "objects.trajectories", "Trajectory": "objects.trajectories",
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
-    "Battery": "measure.plans", "BodySite": "measure.plans", "Panel": "measure.plans",
+    "Battery": "measure.plans", "BodySite": "measure.plans", "Orbiter": "measure.plans", "Panel": "measure.plans",
     "Contact": "measure.results", "PowerProfile": "measure.results", "SkyTrack": "measure.results",
     "Horizon": "measure.results", "MeasuredArea": "measure.results", "MeasuredLine": "measure.results",
     "Profile": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results",

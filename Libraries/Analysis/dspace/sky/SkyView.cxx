@@ -49,11 +49,43 @@ Sighting Sight(const Ephemeris& ephemeris, int target, const State& observer, do
   return out;
 }
 
+SightedPoint SightPoint(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& from,
+                        const std::function<SkyPlace(double tdb)>& point, double tdb) {
+  const bool apart = point(tdb).body != from.body;
+  const auto stateOf = [&](const SkyPlace& place, double at) {
+    return apart ? PlaceState(ephemeris, frames, place, at) : StateAboutBody(frames, place, at);
+  };
+  SightedPoint seen;
+  seen.observer = stateOf(from, tdb);
+  for (int i = 0; i < MostIterations; ++i) {
+    const double left = tdb - seen.lightTime;
+    seen.place = point(left);
+    seen.away = stateOf(seen.place, left).position - seen.observer.position;
+    const double before = seen.lightTime;
+    seen.lightTime = seen.away.norm() / SpeedOfLight;
+    if (std::abs(seen.lightTime - before) <= 1e-10 * seen.lightTime) {
+      break;
+    }
+  }
+  return seen;
+}
+
+double ElevationFrom(const Frames& frames, const SightedPoint& seen, double tdb) {
+  const SkyPlace& place = seen.place;
+  return ToAzimuthElevation(
+             place.axes.toLocal *
+             (frames.Rotation("J2000", place.frame, tdb - seen.lightTime) * -seen.away))
+      .elevation_deg;
+}
+
+State StateAboutBody(const Frames& frames, const SkyPlace& place, double tdb) {
+  return frames.Turn(place.frame, "J2000", tdb) *
+         State{place.axes.position, Eigen::Vector3d::Zero()};
+}
+
 State PlaceState(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                  double tdb) {
-  const StateTurn turn = frames.Turn(place.frame, "J2000", tdb);
-  return ephemeris.FromBarycenter(place.body, tdb) +
-         turn * State{place.axes.position, Eigen::Vector3d::Zero()};
+  return ephemeris.FromBarycenter(place.body, tdb) + StateAboutBody(frames, place, tdb);
 }
 
 SkyBody Look(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place, int target,

@@ -2,6 +2,7 @@
 #ifndef DSPACE_SKY_SKY_VIEW_H
 #define DSPACE_SKY_SKY_VIEW_H
 
+#include <functional>
 #include <string>
 
 #include <Eigen/Core>
@@ -50,7 +51,23 @@ struct Sighting {
 };
 Sighting Sight(const Ephemeris& ephemeris, int target, const State& observer, double tdb);
 
-// The place's state from the solar system's barycentre in J2000.
+// A point that moves, where it was when its light left for an observer.
+struct SightedPoint {
+  SkyPlace place;
+  State observer;         // as `from` has it
+  Eigen::Vector3d away;   // from the observer, J2000 [m]; no aberration
+  double lightTime = 0.0; // [s]
+};
+// `point`: the place at a TDB. States are from the solar system's barycentre, or where the point is
+// about the observer's own body from this body's centre: there the body's motion does not change
+// the distance. Throws what `point` throws.
+SightedPoint SightPoint(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& from,
+                        const std::function<SkyPlace(double tdb)>& point, double tdb);
+// The observer's elevation over the point's own horizontal [deg], without aberration.
+double ElevationFrom(const Frames& frames, const SightedPoint& seen, double tdb);
+
+// The place's state from its body's centre, and from the solar system's barycentre, in J2000.
+State StateAboutBody(const Frames& frames, const SkyPlace& place, double tdb);
 State PlaceState(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                  double tdb);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -151,29 +152,21 @@ private:
   std::vector<Sample> Samples_;
 };
 
-// The station's direction from the place is that of its apparent position.
-Sighted LookAtStation(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
-                      const ContactTarget& target, double tdb) {
-  const State observer = PlaceState(ephemeris, frames, place, tdb);
-  const SkyPlace& station = *target.station;
-  Eigen::Vector3d away = Eigen::Vector3d::Zero();
-  double lightTime = 0.0;
-  for (int i = 0; i < 10; ++i) {
-    away = PlaceState(ephemeris, frames, station, tdb - lightTime).position - observer.position;
-    const double before = lightTime;
-    lightTime = away.norm() / SpeedOfLight;
-    if (std::abs(lightTime - before) <= 1e-10 * lightTime) {
-      break;
-    }
-  }
+// The point's direction from the place is that of its apparent position.
+Sighted LookAtPoint(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
+                    const ContactTarget& target, double tdb) {
+  const SightedPoint point = SightPoint(ephemeris, frames, place, target.point, tdb);
   Sighted seen;
-  seen.range = away.norm();
+  seen.range = point.away.norm();
+  // Positions from the solar system's barycentre are rounded to 3e-5 m.
+  Require(seen.range >= 0.01, "contacts", "the distance between the place and the target",
+          seen.range, "0.01 m or more");
   seen.direction =
       ToAzimuthElevation(place.axes.toLocal * (frames.Rotation("J2000", place.frame, tdb) *
-                                               Aberrated(away, observer.velocity)));
-  const AzimuthElevation back = ToAzimuthElevation(
-      station.axes.toLocal * (frames.Rotation("J2000", station.frame, tdb - lightTime) * -away));
-  seen.margin_deg = back.elevation_deg - target.stationMask_deg;
+                                               Aberrated(point.away, point.observer.velocity)));
+  seen.margin_deg = target.stationMask_deg
+                        ? ElevationFrom(frames, point, tdb) - *target.stationMask_deg
+                        : std::numeric_limits<double>::infinity();
   return seen;
 }
 
@@ -196,13 +189,13 @@ std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, do
 
 Sighted LookOver(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                  const HorizonLine& horizon, const ContactTarget& target, double tdb, bool upper) {
-  if (target.station) {
-    if (target.body == place.body) {
+  if (target.point) {
+    if (target.stationMask_deg && target.body == place.body) {
       Reject("station on body '" + ephemeris.Names().NameOf(target.body) + "'",
              "the place is on the same body; accepted: a station on another one (a line of sight "
              "for this one)");
     }
-    Sighted seen = LookAtStation(ephemeris, frames, place, target, tdb);
+    Sighted seen = LookAtPoint(ephemeris, frames, place, target, tdb);
     seen.margin_deg = std::min(seen.margin_deg, horizon.TopOver(seen.direction, 0.0));
     return seen;
   }

@@ -40,17 +40,23 @@ void RequireSpan(double start, double end, double step);
 std::vector<Contact> FindContacts(const std::function<Sighted(double)>& look, double start,
                                   double end, double step);
 
-// A body, a spacecraft, or a station on a body.
+// A body or spacecraft of the ephemeris, a station on a body, or a point that moves.
 struct ContactTarget {
-  int body = 0;                    // NAIF id
-  std::optional<SkyPlace> station; // absent: the body's centre
-  double stationMask_deg = 0.0;    // least elevation of the place over the station's own horizontal
+  int body = 0; // NAIF id
+  // The place of a station or of a moving point at a TDB; empty: the body's centre counts.
+  std::function<SkyPlace(double tdb)> point;
+  // Of a station: least elevation of the place over the point's own horizontal; absent: the point's
+  // axes do not count.
+  std::optional<double> stationMask_deg;
 };
 
 // `target` at `tdb` over a place with a horizon: with light time and stellar aberration, without
-// refraction. A station sees the place where it is now, from where the station was when its light
-// left, without aberration (at most 0.006 degrees). `upper`: the top of the body's disc counts, not
-// its centre. Other bodies do not hide the target. Throws what Look throws.
+// refraction. The velocity that aberrates is that of the place's body and of the turn of its axes,
+// not the place's own over them (7 km/s: 5 arcsec). A point is where it was when its light left
+// (SightPoint). A station sees the place where it is now, without aberration (at most 0.006
+// degrees). `upper`: the top of the body's disc counts, not its centre. Bodies do not hide the
+// target. Throws what Look and `point` throw; Error(InvalidArgument) for a station on the place's
+// own body, and for a point where the place is.
 Sighted LookOver(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                  const HorizonLine& horizon, const ContactTarget& target, double tdb,
                  bool upper = false);

@@ -26,6 +26,8 @@ const char* NameOf(Quantity quantity) {
     return "longest night [s]";
   case Quantity::PermanentShadow:
     return "permanent shadow";
+  case Quantity::StationFraction:
+    return "fraction of the time with a station in sight";
   default:
     return "fraction of the time with the Earth in sight";
   }
@@ -59,6 +61,11 @@ void Check(const IlluminationOptions& options) {
   }
   Require(!options.quantities.empty(), about, "the number of quantities", 0.0, "one or more");
   for (const Quantity quantity : options.quantities) {
+    if (quantity == Quantity::StationFraction &&
+        options.stations_S.size() != options.sun_S.size()) {
+      Reject(about, "stations have places at " + std::to_string(options.stations_S.size()) +
+                        " steps; accepted: at every step, " + std::to_string(options.sun_S.size()));
+    }
     if (quantity == Quantity::EarthFraction && options.earth_S.size() != options.sun_S.size()) {
       Reject(about, "the Earth has " + std::to_string(options.earth_S.size()) +
                         " places; accepted: one a step, " + std::to_string(options.sun_S.size()));
@@ -69,6 +76,17 @@ void Check(const IlluminationOptions& options) {
     for (const Eigen::Vector3d& p_S : *places) {
       RequireFinite(about, "a place of a body", p_S);
     }
+  }
+  for (const std::vector<Eigen::Vector3d>& places : options.stations_S) {
+    for (const Eigen::Vector3d& p_S : places) {
+      RequireFinite(about, "a place of a station", p_S);
+    }
+  }
+}
+
+void Add(const Eigen::Vector3d& p_S, InputHash& hash) {
+  for (const double value : {p_S.x(), p_S.y(), p_S.z()}) {
+    hash.Add(value);
   }
 }
 
@@ -85,18 +103,26 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
   InputHash hash;
   hash.Add(std::uint64_t(IlluminationVersion));
   hash.Add(horizons.InputHash());
-  bool sees = false; // the Earth
+  bool sees = false;  // the Earth
+  bool links = false; // with stations
   for (const Quantity quantity : options.quantities) {
     layout.bands.emplace_back(NameOf(quantity));
     hash.Add(layout.bands.back());
     sees |= quantity == Quantity::EarthFraction;
+    links |= quantity == Quantity::StationFraction;
   }
   for (const std::vector<Eigen::Vector3d>* places :
        {&options.sun_S, &options.earth_S, &options.eclipser_S}) {
     hash.Add(std::uint64_t(places->size()));
     for (const Eigen::Vector3d& p_S : *places) {
-      for (const double value : {p_S.x(), p_S.y(), p_S.z()}) {
-        hash.Add(value);
+      Add(p_S, hash);
+    }
+  }
+  if (links) {
+    for (const std::vector<Eigen::Vector3d>& places : options.stations_S) {
+      hash.Add(std::uint64_t(places.size()));
+      for (const Eigen::Vector3d& p_S : places) {
+        Add(p_S, hash);
       }
     }
   }
@@ -123,6 +149,8 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
     std::vector<std::uint32_t> night(count, 0);
     std::vector<std::uint32_t> longest(count, 0);
     std::vector<std::uint32_t> earth(count, 0);
+    std::vector<std::uint32_t> linked(count, 0);
+    std::vector<std::uint32_t> stations(links ? count : 0); // in sight at one step
     std::array<float, TileFile::Side> above, rise, secant;
     const SeenRow seen = {above.data(), rise.data(), secant.data(), tile.Width()};
     const auto see = [&](int j) {
@@ -155,6 +183,18 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
           CountAbove(seen, &earth[see(j)]);
         }
       }
+      if (links && !options.stations_S[k].empty()) {
+        std::fill(stations.begin(), stations.end(), 0);
+        for (const Eigen::Vector3d& station_S : options.stations_S[k]) {
+          tile.LookAt(station_S);
+          for (int j = 0; j < tile.Height(); ++j) {
+            CountAbove(seen, &stations[see(j)]);
+          }
+        }
+        for (std::size_t i = 0; i < count; ++i) {
+          linked[i] += stations[i] > 0 ? 1 : 0;
+        }
+      }
     }
     for (int j = 0; j < tile.Height(); ++j) {
       for (int i = 0; i < tile.Width(); ++i) {
@@ -167,7 +207,8 @@ bool WriteIllumination(const HorizonMap& horizons, const IlluminationOptions& op
                     : quantity == Quantity::LongestNight ? longest[at] * options.step_s
                     : quantity == Quantity::PermanentShadow
                         ? double(longest[at] == options.sun_S.size())
-                        : earth[at] / steps;
+                    : quantity == Quantity::EarthFraction ? earth[at] / steps
+                                                          : linked[at] / steps;
           }
           values[(b * TileFile::Side + std::size_t(j)) * TileFile::Side + std::size_t(i)] =
               float(value);

@@ -19,7 +19,8 @@ struct IlluminationOptions {
                      // eclipses included
     LongestNight,    // [s] with the disc completely hidden: consecutive steps times the step
     PermanentShadow, // 1: the disc is hidden at every step; 0: else
-    EarthFraction    // of the steps at which the Earth's centre is above the horizon, 0 to 1
+    EarthFraction,   // of the steps at which the Earth's centre is above the horizon, 0 to 1
+    StationFraction  // of the steps at which a station is above the horizon, 0 to 1
   };
   static constexpr std::size_t MostSteps = 10000000;
 
@@ -29,6 +30,8 @@ struct IlluminationOptions {
   std::vector<Eigen::Vector3d> sun_S;
   std::vector<Eigen::Vector3d> earth_S;
   std::vector<Eigen::Vector3d> eclipser_S;
+  // The stations in operation at every step: those that see the ground over their own masks.
+  std::vector<std::vector<Eigen::Vector3d>> stations_S;
   double step_s = 3600.0;      // > 0
   double sunRadius = 695700e3; // [m], >= 0 (IAU 2015 resolution B3)
   double eclipserRadius = 0.0; // [m], >= 0

@@ -16,12 +16,14 @@ HorizonReading ReadHorizon(const std::vector<float>& range, int size, double rig
   const int column = std::clamp(int(std::floor(half + half * tangent)), 0, size - 1);
   const double middle = (column + 0.5 - half) / half; // tangent of the column's own azimuth
   HorizonReading reading;
+  reading.column = column;
   for (int row = 0; row < size; ++row) {
     const float found = range[std::size_t(row) * std::size_t(size) + std::size_t(column)];
     if (std::isfinite(found)) {
       // The upper edge of the row lies `half - row` pixels above the middle.
       reading.elevation_deg = std::atan2((half - row) / half, std::hypot(1.0, middle)) / PerDegree;
       reading.range = found;
+      reading.row = row;
       reading.over = row == 0;
       break;
     }

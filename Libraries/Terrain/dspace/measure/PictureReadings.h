@@ -12,7 +12,9 @@ namespace dspace {
 struct HorizonReading {
   double elevation_deg = -90.0; // -90: the column shows nothing
   float range = 0.0f;           // of the highest pixel that was hit
-  bool over = false;            // the column's top pixel was hit: the horizon is at least this high
+  int column = 0;               // of that pixel
+  int row = 0;
+  bool over = false; // the column's top pixel was hit: the horizon is at least this high
 };
 
 // The horizon at an azimuth `right_deg` clockwise of the picture's middle, -45 to 45: the upper

@@ -77,6 +77,7 @@ TEST_F(MainWindowTest, OpensAModelInAViewOfItsOwn) {
   ViewportWidget* view = window->View("view 1");
   ASSERT_TRUE(view);
   ASSERT_TRUE(Settled());
+  EXPECT_EQ(window->focusWidget(), view); // its keys work at once
   // The tree of the scene has it.
   auto* tree = window->findChild<dspace::widgets::SceneTreeWidget*>();
   ASSERT_TRUE(tree);
@@ -125,6 +126,10 @@ TEST_F(MainWindowTest, ThePromptRunsCompletesAndRecalls) {
   EXPECT_TRUE(edit->text().startsWith("scene.add_polydata")) << edit->text().toStdString();
   edit->clear();
   EXPECT_TRUE(window->Console()->Script().contains("print(1 + 2)\n"));
+  // Lines that raised are comments of a script, typed ones and those of menus.
+  EXPECT_TRUE(window->Console()->Script().contains("\n# failed: nothing_of_this_name\n"));
+  EXPECT_FALSE(window->Run("app.open('/nowhere.glb')"));
+  EXPECT_TRUE(window->Console()->Script().endsWith("\n# failed: app.open('/nowhere.glb')\n"));
 }
 
 TEST_F(MainWindowTest, PythonMakesViewsThatFloatAndClose) {

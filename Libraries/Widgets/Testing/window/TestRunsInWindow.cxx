@@ -170,6 +170,28 @@ TEST_F(RunsInWindow, TheTimelineShowsAndMovesIt) {
   EXPECT_EQ(Number("run.index"), Number("run.times.index(102.5)"));
 }
 
+TEST_F(RunsInWindow, ANewViewIsOfTheRecording) {
+  const int views = window->ViewCount();
+  ASSERT_TRUE(Run("made = app.new_view()")) << errors.toStdString();
+  EXPECT_EQ(window->ViewCount(), views + 1);
+  EXPECT_EQ(Value("made._client is run.session._client"), "True");
+  EXPECT_EQ(window->Scenes()->Active(), "cart.dspace");
+  ViewportWidget* made = window->View(Value("made.name"));
+  ASSERT_TRUE(made);
+  ASSERT_TRUE(Wait([&] { return made->ShownPictures() > 0 && made->isVisible(); }));
+  ASSERT_TRUE(Settled());
+  // The red cart is in it, as in the first view.
+  const QImage picture = made->grab().toImage();
+  int red = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const QColor color = picture.pixelColor(x, y);
+      red += color.red() > 60 && color.red() > 2 * color.green() ? 1 : 0;
+    }
+  }
+  EXPECT_GT(red, 20);
+}
+
 TEST_F(RunsInWindow, PlaysFasterSlowerAndBackwards) {
   Click("Faster");
   Click("Faster");

@@ -312,3 +312,27 @@ TEST_F(ViewsInWindow, AMapFollowsTheViewAndThePanOfTheMapMovesIt) {
               Number("view.camera.pose_in().position[0]"), 1e-6);
   EXPECT_EQ(errors.toStdString(), "");
 }
+
+TEST_F(ViewsInWindow, TheTreesMenuIsLinesOfPython) {
+  using dspace::widgets::SceneAction;
+  const auto& scene = Tree()->Model()->GetScene();
+  const dspace::FrameId arm = scene->Frames().Find("arm");
+  const dspace::ObjectId left = scene->FindObject("left");
+  Tree()->Request(SceneAction::Trail, {arm, 0});
+  EXPECT_EQ(LastLine(), "app.act(\"trail\", \"arm\")");
+  EXPECT_NE(scene->FindObject("trail of arm"), 0U);
+  ASSERT_TRUE(window->Run(LastLine())); // once more: it goes
+  EXPECT_EQ(scene->FindObject("trail of arm"), 0U);
+  Tree()->Request(SceneAction::Axes, {arm, 0});
+  EXPECT_EQ(LastLine(), "app.act(\"axes\", \"arm\")");
+  EXPECT_NE(scene->FindObject("axes of arm"), 0U);
+  ASSERT_TRUE(window->Run(LastLine()));
+  Tree()->Request(SceneAction::Hide, {scene->Object(left).frame, left});
+  EXPECT_EQ(LastLine(), "app.act(\"hide\", \"arm\", \"left\")");
+  EXPECT_FALSE(scene->Object(left).visible);
+  ASSERT_TRUE(window->Run(QString("app.act('show', 'arm', %1)").arg(left)));
+  EXPECT_TRUE(scene->Object(left).visible);
+  EXPECT_FALSE(window->Run("app.act('hide', '/', 'nothing')"));
+  EXPECT_FALSE(window->Run("app.act('hide', 'nowhere')"));
+  EXPECT_FALSE(window->Run("app.act('melt', 'arm')"));
+}

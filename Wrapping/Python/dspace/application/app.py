@@ -70,8 +70,12 @@ class App:
         return viewport
 
     def new_view(self, camera=None, title=None, name=None):
-        """A new viewport of the scene with a camera of its own, or with the given one; shown. name: by default the next
-        free one of "view 1", "view 2", ..."""
+        """A new viewport of the scene with a camera of its own, or with the given one; shown. Where the present view is of a
+        recording or a server and nothing is given, the new one is of the same scene and looks as that one does. name: by default
+        the next free one of "view 1", "view 2", ..."""
+        present = self.view
+        if camera is None and name is None and present is not None and present._client is not self.session._client:
+            return self.show(views.copy(self, present), title)
         number = 1 + len(self.views)
         while f"view {number}" in self.session.viewports or f"camera {number}" in self.scene.cameras:
             number += 1
@@ -101,6 +105,16 @@ class App:
             camera.pose = place
             return camera
         return self.scene.add_camera(name, eye=(6, -8, 5), target=(0, 0, 0))
+
+    def act(self, action, frame="/", object=None):
+        """Does what the menu of the scene tree does, in the scene in the docks: "chase" or "focus" (with its camera "main"),
+        "show" or "hide" (all objects on a frame and below), "trail" or "axes" (adds them, or removes them).
+
+        frame: its path. object: the name or id of an object on this frame; None: the frame. Raises dspace.NotFound for one that
+        is not there."""
+        number_or_name = object if object is None or isinstance(object, str) else integer(object, "the object", "act")
+        self._host.extend(json.dumps({"do": "tree", "action": text(action, "the action", "act"),
+                                      "frame": text(frame, "the frame", "act"), "object": number_or_name}))
 
     def close_view(self, viewport):
         """Closes the view and removes its viewport."""

@@ -9,6 +9,9 @@ from dspace.command_line.measure_map import add_map, common, extent_of, map_out,
 
 np = lazy("numpy")
 
+HORIZON_AZIMUTHS = 1440  # below the paths of bodies
+MOST_TIMES = 100_000
+
 
 def add_arguments(parser):
     add_ground(parser, "a file of the horizon: .json, .csv, .html (a report), or .png (a plot); of --map: .tif")
@@ -22,6 +25,14 @@ def add_arguments(parser):
     parser.add_argument("--height", type=float, metavar="H", help="above the ground [m], 0 or more (default: 2); not with --frame")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
+    parser.add_argument("--method", choices=("exact", "image", "both"), default="exact",
+                        help="exact: rays in double precision; image: four pictures of 90 degrees, whose cameras are in the JSON; both: with "
+                        "their difference (default: exact)")
+    parser.add_argument("--time", metavar="T0,T1[,STEP]",
+                        help="with --site: also the paths of bodies over the horizon: UTC, and the step in seconds (default: 3600)")
+    parser.add_argument("--target", action="append", metavar="BODY",
+                        help="of --time: a body or spacecraft; may be given several times (default: sun and earth)")
+    parser.add_argument("--body", metavar="BODY", help="of --time: that the site is on (default: the one that the terrain's CRS names)")
     parser.add_argument("--scheduler", metavar="ADDRESS",
                         help="of --map: the workers of this Dask scheduler (tcp://HOST:PORT) compute the map; they find the terrain at the "
                         "same path. The same command continues, and the file is that of one process (Debian: python3-distributed)")
@@ -33,7 +44,13 @@ def run(options):
     if options.frame is not None and options.height is not None:
         raise Failed("--height: accepted: with --site or --map; a frame has its own height")
     options.height = 2.0 if options.height is None else options.height
+    if options.time is None and (options.target or options.body):
+        raise Failed("--target, --body: accepted: with --time")
+    if options.time is not None and options.site is None:
+        raise Failed("--time: accepted: with --site")
     if options.map:
+        if options.method != "exact":
+            raise Failed("--method: accepted: without --map, which rays and a sweep compute")
         run_map(options)
         return
     if options.scheduler:
@@ -46,28 +63,68 @@ def run(options):
         raise Failed(f"--azimuths {options.azimuths}: accepted: 1 to 1000000")
     with opened(options) as scene:
         ground = MeasuredGround(scene, options)
-        horizon = scene.horizon(options.frame if site is None else ground.site((*site, options.height)), options.azimuths)
+        place = options.frame if site is None else ground.site((*site, options.height))
+        horizon = scene.horizon(place, options.azimuths, method=options.method)
         where = ground.degrees_of(horizon.point)
         found = source_of(options, ground)
+        paths = paths_of(scene, place, options) if options.time is not None else []
     turn = np.nan if horizon.first_deg is None else horizon.first_deg
     rows = [{"azimuth_deg": azimuth, "true_azimuth_deg": (azimuth + turn) % 360.0, "elevation_deg": elevation,
              "distance_m": distance, "lon_deg": point[0], "lat_deg": point[1], "height_m": point[2]}
             for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
+    if options.method == "both":
+        for row, image, difference in zip(rows, horizon.image_elevation_deg, horizon.image_difference_deg):
+            row.update(image_elevation_deg=image, image_difference_deg=difference)
+    if options.method != "exact":
+        found.update(method=options.method, image_pixel_deg=horizon.image_pixel_deg, cameras=[
+            {"position_m": pose.position, "quaternion_wxyz": pose.quaternion} for pose in horizon.image_cameras])
+    if paths:
+        found["paths"] = [row for _, rows_ in paths for row in rows_]
     if site is None:
         found.update(frame=options.frame, horizon=rows)
     else:
         found.update(lon_deg=site[0], lat_deg=site[1], height_m=options.height, horizon=rows)
     if out is not None:
         write(out, found, rows, lambda figure: draw(figure, horizon, options.frame or f"{site[0]:g}, {site[1]:g}, {options.height:g} "
-                                                    "m above the ground"))
+                                                    "m above the ground", paths, turn))
     if options.json:
         sys.stdout.write(text_of(found))
         return
     low, high = (int(find(horizon.elevation_deg)) for find in (np.argmin, np.argmax))
     print(f"{len(rows)} azimuths: elevation {horizon.elevation_deg[low]:.5f} (azimuth {horizon.azimuth_deg[low]:g}) to "
           f"{horizon.elevation_deg[high]:.5f} deg (azimuth {horizon.azimuth_deg[high]:g}, {horizon.distance[high]:.1f} m away)")
+    for name, path in paths:
+        seen = sum(row["above_deg"] > 0.0 for row in path)
+        print(f"{name}: elevation {min(row['elevation_deg'] for row in path):.5f} to {max(row['elevation_deg'] for row in path):.5f} deg, above "
+              f"the horizon at {seen} of {len(path)} times")
     if out is not None:
         print(f"{out}: {len(rows)} azimuths")
+
+
+def paths_of(scene, place, options):
+    """(name, rows) of each body: where it stands over the site, and how high above the horizon in its direction."""
+    parts = options.time.split(",")
+    if len(parts) not in (2, 3):
+        raise Failed(f"--time {options.time!r}: accepted: T0,T1[,STEP]")
+    start, end = (float(time) for time in scene.tdb(parts[:2]))
+    try:
+        step = float(parts[2]) if len(parts) == 3 else 3600.0
+    except ValueError:
+        step = 0.0
+    if not start < end or not step > 0.0 or not (end - start) / step <= MOST_TIMES:
+        raise Failed(f"--time {options.time!r}: accepted: an end after the start, a step above 0 s, at most {MOST_TIMES:,} steps")
+    times = np.append(np.arange(start, end, step), end)
+    texts = scene.utc(times)
+    horizon = scene.horizon(place, HORIZON_AZIMUTHS)
+    if horizon.first_deg is None:
+        raise Failed("--time: the terrain has no longitudes and latitudes; accepted: terrain on a body")
+    paths = []
+    for name in options.target or ("sun", "earth"):
+        track = scene.sky_track(place, name, times, body=options.body)
+        above = track.elevation_deg - horizon.elevation_at((track.azimuth_deg - horizon.first_deg) % 360.0)
+        paths.append((name, [{"target": name, "utc": text, "true_azimuth_deg": azimuth, "elevation_deg": elevation, "above_deg": over}
+                             for text, azimuth, elevation, over in zip(texts, track.azimuth_deg, track.elevation_deg, above)]))
+    return paths
 
 
 def run_map(options):
@@ -95,8 +152,9 @@ def run_map(options):
     print(told(out, made))
 
 
-def draw(figure, horizon, title):
-    """The elevation over the azimuth, and the distance below it."""
+def draw(figure, horizon, title, paths=(), turn=0.0):
+    """The elevation over the azimuth, with the paths of bodies, and the distance below it. turn: from the horizon's azimuths to true
+    ones [deg]."""
     above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
     azimuth = np.append(horizon.azimuth_deg, 360.0)
     elevation = np.where(np.isfinite(horizon.distance), horizon.elevation_deg, np.nan)
@@ -105,6 +163,17 @@ def draw(figure, horizon, title):
     foot = (known.min() - 0.05 * max(np.ptp(known), 1e-3)) if known.size else -90.0
     above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0)
     above.plot(azimuth, elevation, color="#5c5348", linewidth=1.0)
+    for (name, path), colour in zip(paths, ("#d98200", "#2c56c8", "#8a2be2", "#2c7a3f", "#b3261e") * len(paths)):
+        azimuths = np.array([row["true_azimuth_deg"] for row in path])
+        along = np.unwrap((azimuths - turn) % 360.0, period=360.0)
+        heights = np.array([row["elevation_deg"] for row in path])
+        for whole in range(int(np.floor(along.min() / 360.0)), int(np.floor(along.max() / 360.0)) + 1):
+            above.plot(along - 360.0 * whole, heights, color=colour, linewidth=1.2, label=name if whole == np.floor(along[0] / 360.0) else None)
+    if paths:
+        shown = [row["elevation_deg"] for _, path in paths for row in path]
+        foot = min(foot, max(min(shown), -15.0) - 1.0)
+        above.set_ylim(top=max(*shown, *known, 0.0) + 1.0)
+        above.legend(fontsize=8, loc="upper right")
     above.set_ylim(bottom=foot)
     above.axhline(0.0, color="#808080", linewidth=0.6)
     above.set_ylabel("elevation [deg]")

@@ -12,6 +12,7 @@ from dspace.command_line.measure_map import (add_map, common, extent_of, map_out
 LOOKS = {"lit_fraction": ("lit fraction of the time", "inferno", 0.0, 1.0),
          "longest_night": ("longest night [s]", "magma_r", 0.0, None),
          "earth_fraction": ("fraction of the time with the Earth in sight", "viridis", 0.0, 1.0),
+         "station_fraction": ("fraction of the time with a station in sight", "viridis", 0.0, 1.0),
          "permanent_shadow": ("permanent shadow", "gray_r", 0.0, 1.0)}
 
 
@@ -30,6 +31,11 @@ def add_arguments(parser):
     parser.add_argument("--body", metavar="BODY", help="that the terrain lies on (default: the one that its CRS names)")
     parser.add_argument("--quantity", action="append", choices=tuple(LOOKS),
                         help="may be given several times (default: lit_fraction). longest_night is in seconds")
+    parser.add_argument("--station", action="append", default=[], metavar="LON,LAT[,H]",
+                        help="of station_fraction: a station on the Earth: longitude (east), geodetic latitude [deg], height [m]; may be given "
+                        "several times")
+    parser.add_argument("--station-mask", type=float, default=0.0, metavar="E",
+                        help="least elevation of the map's middle over a station's horizontal [deg] (default: 0)")
     parser.add_argument("--no-eclipses", dest="eclipses", action="store_false",
                         help="leave out that the Earth eclipses the Sun over the Moon, and the Moon over the Earth")
     parser.add_argument("--ensemble", type=int, metavar="N",
@@ -46,6 +52,7 @@ def add_arguments(parser):
 
 
 def run(options):
+    from dspace.measure.plans import BodySite
     out = map_out(options)
     if not options.step > 0.0:
         raise Failed(f"--step {options.step}: accepted: more than 0 s")
@@ -54,6 +61,11 @@ def run(options):
     if out.suffix.lower() != ".tif":
         require_gdal()
     quantities = tuple(options.quantity or ("lit_fraction",))
+    if ("station_fraction" in quantities) != bool(options.station):
+        raise Failed("--station: accepted: with --quantity station_fraction, and that with --station")
+    if options.station and options.ensemble is not None:
+        raise Failed("--station: accepted: without --ensemble")
+    stations = [BodySite("earth", *place_of(text, "LON,LAT[,H]", (2, 3), "--station"), geodetic=True) for text in options.station]
     if options.ensemble is not None:
         run_ensemble(options, out, quantities)
         return
@@ -70,6 +82,7 @@ def run(options):
         path = stack.enter_context(written_to(out))
         made = ground.scene.illumination_map(horizons, path, start=options.start, end=options.end, step=options.step,
                                              quantities=quantities, terrain=ground.terrain, body=options.body,
+                                             stations=stations, station_mask=options.station_mask,
                                              eclipses=options.eclipses, replace=options.replace, **common(options))
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "eclipses": made.metadata.get("DSPACE_ECLIPSES") == "yes",

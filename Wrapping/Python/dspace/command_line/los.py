@@ -4,9 +4,11 @@ import sys
 from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import (MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, unit_of,
                                                  write)
+from dspace.command_line.recorded import recorded_playback
 
 np = lazy("numpy")
 
+STEP = 1.0  # [s] of --time
 SAMPLES = 1001  # of the profiles in plots
 MOST_PROFILES = 6
 
@@ -25,6 +27,10 @@ def add_arguments(parser):
     parser.add_argument("--method", choices=("exact", "image", "both"), default="exact",
                         help="exact: rays in double precision; image: a picture from the line's start; both: also what the picture shows, "
                         "and whether it differs (default: exact)")
+    parser.add_argument("--time", metavar="T0,T1[,STEP]",
+                        help=f"of --recording: print when the lines are clear between two times [s], by samples STEP apart (default: {STEP:g} s) "
+                        "and bisection")
+    parser.add_argument("--mask", type=float, metavar="E", help="with --time: least elevation of the end over the start's horizontal [deg]")
     parser.set_defaults(run=run)
 
 
@@ -39,6 +45,11 @@ def run(options):
                      "either")
     count = max(len(starts), len(ends))
     starts, ends = (places * count if len(places) == 1 else places for places in (starts, ends))
+    if options.time is not None:
+        run_span(options, out, starts, ends)
+        return
+    if options.mask is not None:
+        raise Failed("--mask: accepted: with --time")
     with opened(options) as scene:
         ground = MeasuredGround(scene, options)
         if out is not None and out.suffix.lower() in (".png", ".html") and ground.terrain is None:
@@ -56,6 +67,80 @@ def run(options):
         print(told(row))
     if out is not None:
         print(f"{out}: {count} line{'s' if count != 1 else ''}")
+
+
+def run_span(options, out, starts, ends):
+    """Prints the contacts of lines over a span of the recording's time."""
+    if options.recording is None or options.at is not None:
+        raise Failed("--time: accepted: with --recording and without --at; `dspace contacts` finds contacts from a site with bodies, "
+                     "stations and orbits")
+    if options.method != "exact" or options.wavelength is not None:
+        raise Failed("--time: accepted: without --wavelength, and with --method exact")
+    try:
+        times = [float(part) for part in options.time.split(",")]
+    except ValueError:
+        times = []
+    if len(times) not in (2, 3) or not np.isfinite(times).all():
+        raise Failed(f"--time {options.time!r}: accepted: T0,T1[,STEP], seconds of the recording")
+    begin, finish, step = times if len(times) == 3 else (*times, STEP)
+    rows = []
+    with recorded_playback(options) as (playback, scene):
+        first, last = playback.times[0], playback.times[-1]
+        if not (first <= begin < finish <= last):
+            raise Failed(f"--time {options.time!r}: {options.recording} runs from {first:g} to {last:g} s; accepted: T0 before T1 within it")
+        ground = MeasuredGround(scene, options)
+        for start, end in zip(starts, ends):
+            start_place, end_place = (place if isinstance(place, str) else ground.site(place) for place in (start, end))
+            head = {**end_row("from", start, True), **end_row("to", end, True)}
+            for contact in scene.sight_contacts(start_place, end_place, begin, finish, step=step, mask=options.mask, playback=playback,
+                                                without=options.without):
+                rows.append({**head, **contact_row(contact)})
+        found = {**source_of(options, ground), "begin_s": begin, "end_s": finish, "step_s": step, "mask_deg": options.mask, "contacts": rows}
+        names = [span_name(end_row("from", start, True), end_row("to", end, True)) for start, end in zip(starts, ends)]
+        if out is not None:
+            write(out, found, rows or [dict.fromkeys(contact_row(None))], lambda figure: draw_span(figure, begin, finish, names, rows))
+    if options.json:
+        sys.stdout.write(text_of(found))
+        return
+    for row in rows:
+        print(f"{span_name(row)}: {'already clear at' if row['since_before'] else 'clear from'} {row['rise_s']:.3f} s (azimuth "
+              f"{row['rise_azimuth_deg']:.3f}, elevation {row['rise_elevation_deg']:.3f} deg) {'still at' if row['until_after'] else 'to'} "
+              f"{row['set_s']:.3f} s (azimuth {row['set_azimuth_deg']:.3f}, elevation {row['set_elevation_deg']:.3f} deg), peak "
+              f"{row['peak_elevation_deg']:.3f} deg at {row['peak_s']:.3f} s, range there {row['peak_range_m']:.3f} m")
+    for name in names:
+        total = sum(row["duration_s"] for row in rows if span_name(row) == name)
+        print(f"{name}: clear {total:.3f} s, {100.0 * total / (finish - begin):.2f} % of the time")
+    if out is not None:
+        print(f"{out}: {len(rows)} contact{'s' if len(rows) != 1 else ''}")
+
+
+def contact_row(contact):
+    """A contact as values of a row; of None their names."""
+    row = {}
+    for name in ("rise", "peak", "set"):
+        at = getattr(contact, name, None)
+        row.update({f"{name}_{word}": getattr(at, value, None) for word, value in (
+            ("s", "time"), ("azimuth_deg", "azimuth_deg"), ("elevation_deg", "elevation_deg"), ("range_m", "range"))})
+    return {**row, **{f"{word}{unit}": getattr(contact, word, None) for word, unit in (
+        ("duration", "_s"), ("since_before", ""), ("until_after", ""))}}
+
+
+def span_name(*rows):
+    row = {name: value for each in rows for name, value in each.items()}
+    return f"{place_text(row, 'from')} to {place_text(row, 'to')}"
+
+
+def draw_span(figure, begin, finish, names, rows):
+    figure.set_size_inches(9.0, 1.6 + 0.5 * len(names))
+    axes = figure.subplots()
+    for i, name in enumerate(names):
+        axes.broken_barh([(row["rise_s"], row["duration_s"]) for row in rows if span_name(row) == name], (i - 0.35, 0.7), color="#2c7a3f")
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.set_xlim(begin, finish)
+    axes.set_xlabel("time of the recording [s]")
+    axes.set_title("Clear lines of sight", fontsize=10)
+    axes.grid(axis="x", linewidth=0.4)
 
 
 def end_of(text, option, options):

@@ -103,6 +103,8 @@ def write_map(out, made, found, title, look):
             bands.append({"band": name, "cells": int(known.size), "least": known.min() if known.size else None,
                           "mean": known.mean(dtype=float) if known.size else None,
                           "greatest": known.max() if known.size else None})
+            if name == "permanent_shadow":
+                bands[-1]["area_m2"] = float(np.nansum(made.areas() * values))
         atomic_write(out, text_of({**found, "bands": bands}).encode())
     elif ending == ".csv":
         atomic_write(out, table_of(out, made))
@@ -159,7 +161,12 @@ def frame_of(made):
 
 def told(out, made):
     cell = f", {made.cell_size:.9g} map units a cell" if made.cell_size else ""
-    return f"{out}: {made.columns} x {made.rows} cells{cell}, {len(made.bands)} band{'s' if len(made.bands) > 1 else ''}"
+    text = f"{out}: {made.columns} x {made.rows} cells{cell}, {len(made.bands)} band{'s' if len(made.bands) > 1 else ''}"
+    if "permanent_shadow" in made.bands and pathlib.Path(made.path).exists():
+        dark, areas = made.read("permanent_shadow"), made.areas()
+        whole = np.sum(areas[np.isfinite(dark)])
+        text += f"; permanent shadow {np.nansum(areas * dark) / 1e6:.6g} km2, {100.0 * np.nansum(areas * dark) / whole:.3f} %" if whole else ""
+    return text
 
 
 def require_gdal():

@@ -14,6 +14,13 @@ def add_recording(parser, source=None):
 @contextlib.contextmanager
 def recorded_scene(options):
     """The Scene of the command's recording, at its time."""
+    with recorded_playback(options) as (_, scene):
+        yield scene
+
+
+@contextlib.contextmanager
+def recorded_playback(options):
+    """The Playback of the command's recording at its time, and its Scene."""
     from dspace.playback.playback import Playback
     with tidy_end(), Playback(options.recording) as playback:
         first, last = playback.times[0], playback.times[-1]
@@ -24,4 +31,4 @@ def recorded_scene(options):
         if options.scene is None and len(scenes) != 1 or options.scene is not None and options.scene not in scenes:
             raise Failed(f"{options.recording}: the scene is {options.scene!r}; accepted: --scene with one of "
                          f"{', '.join(map(repr, scenes)) or 'none'}")
-        yield next(iter(scenes.values())) if options.scene is None else scenes[options.scene]
+        yield playback, next(iter(scenes.values())) if options.scene is None else scenes[options.scene]

@@ -9,8 +9,9 @@ from dspace.errors import Corrupt, InvalidArgument, NotFound, Unsupported
 
 # Names of quantities by the descriptions of bands in files.
 BANDS = {"lit fraction of the time": "lit_fraction", "longest night [s]": "longest_night",
-         "fraction of the time with the Earth in sight": "earth_fraction", "permanent shadow": "permanent_shadow", "least height [m]": "least_height",
-         "observers": "count"}
+         "fraction of the time with the Earth in sight": "earth_fraction",
+         "fraction of the time with a station in sight": "station_fraction", "permanent shadow": "permanent_shadow",
+         "least height [m]": "least_height", "observers": "count"}
 
 
 @dataclass(frozen=True)
@@ -81,6 +82,47 @@ class MapFile:
         north = np.arctan2((there[0] - x) / away, (there[1] - y) / away)
         rows = np.arctan2(-xy, -dy) if self.metadata.get("DSPACE_PLACEMENT", "").startswith("pole") else 0.0
         return float(np.degrees(rows - north) % 360.0)
+
+    def areas(self):
+        """Returns the ground's area of each cell at the datum [m^2], an array (rows, columns): on the CRS's ellipsoid by the map's
+        scale at every cell, to a share of 1e-4; in map units squared where the CRS has no longitudes and latitudes. The area in permanent
+        shadow is numpy.nansum(lit.areas() * lit.read("permanent_shadow"))."""
+        from osgeo import osr
+        x0, dx, xy, y0, yx, dy = self.geotransform
+        cell = abs(dx * dy - xy * yx)
+        srs = self._dataset().GetSpatialRef()
+        if srs is None or not (srs.IsGeographic() or srs.IsProjected()):
+            return np.full((self.rows, self.columns), cell)
+        # Enough nodes for the scale between them to be linear to 1e-4, also near a pole of the projection.
+        nodes = [np.unique(np.linspace(0.0, count, min(count + 1, 257))) for count in (self.columns, self.rows)]
+        c, r = np.meshgrid(*nodes)
+        x, y = x0 + dx * c + xy * r, y0 + yx * c + dy * r
+        a, b = srs.GetSemiMajor(), srs.GetSemiMinor()
+        if srs.IsGeographic():
+            latitude = np.radians(np.clip(y, -90.0, 90.0))
+            turn = np.radians(1.0) ** 2
+        else:
+            degrees = srs.CloneGeogCS()
+            for each in (srs, degrees):
+                each.SetAxisMappingStrategy(osr.OAMS_TRADITIONAL_GIS_ORDER)
+            to_degrees = osr.CoordinateTransformation(srs, degrees)
+            step = max(1.0, 1e-4 * np.sqrt(cell))  # [m]
+
+            def unit(px, py):
+                at = np.radians(np.array(to_degrees.TransformPoints(np.column_stack((px.ravel(), py.ravel()))))[:, :2])
+                return np.stack((np.cos(at[:, 1]) * np.cos(at[:, 0]), np.cos(at[:, 1]) * np.sin(at[:, 0]), np.sin(at[:, 1])), axis=-1)
+            along_x, along_y = ((unit(x + e * step, y + (1 - e) * step) - unit(x - e * step, y - (1 - e) * step)) / (2.0 * step)
+                                for e in (1, 0))
+            # Of the sphere of directions of the ellipsoid's normals: it has no pole that would spoil the differences.
+            turn = np.linalg.norm(np.cross(along_x, along_y), axis=-1).reshape(x.shape)
+            latitude = np.arcsin(np.clip(unit(x, y)[:, 2], -1.0, 1.0)).reshape(x.shape)
+        square = (a * a - b * b) / (a * a)
+        bent = 1.0 - square * np.sin(latitude) ** 2
+        ground = a * a * (1.0 - square) / bent**2 * turn  # the product of the radii of curvature
+        if srs.IsGeographic():
+            ground = ground * np.cos(latitude)
+        across = np.stack([np.interp(np.arange(self.columns) + 0.5, nodes[0], row) for row in ground])
+        return cell * np.stack([np.interp(np.arange(self.rows) + 0.5, nodes[1], column) for column in across.T], axis=-1)
 
     def _require_cell(self, column, row):
         if not (0 <= column < self.columns and 0 <= row < self.rows):

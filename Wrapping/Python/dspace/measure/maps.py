@@ -7,12 +7,13 @@ import numpy as np
 from dspace._core.fields import array_of, file_path, flag, items, put, real, reject, text
 from dspace.errors import DeadlineExceeded, InvalidArgument, WrongType
 from dspace.measure.map_file import MapFile
+from dspace.measure.plans import BodySite
 from dspace.terrain.site import Site
 from dspace.terrain.terrain import Terrain
 
 WAIT_S = 0.2  # of one request: the session is free between two
 VIEWED = ("visible", "least_height", "count")  # Viewshed.Quantity
-LIT = ("lit_fraction", "longest_night", "earth_fraction", "permanent_shadow")  # IlluminationMap.Quantity
+LIT = ("lit_fraction", "longest_night", "earth_fraction", "permanent_shadow", "station_fraction")  # IlluminationMap.Quantity
 
 
 class Maps:
@@ -84,21 +85,25 @@ class Maps:
         return self._make(command, message, about, path, quantities, replace, threads, progress, deadline)
 
     def illumination_map(self, horizons, path, *, start=None, end=None, step=3600.0, quantities=("lit_fraction",),
-                         terrain=None, body=None, sun=None, earth=None, eclipses=True, replace=False, threads=0,
-                         progress=None, deadline=None):
+                         terrain=None, body=None, sun=None, earth=None, stations=(), station_mask=0.0, eclipses=True,
+                         replace=False, threads=0, progress=None, deadline=None):
         """Writes how the cells of a horizon map are lit over a time to a GeoTIFF. Returns a MapFile.
 
         horizons: the MapFile of horizon_map(), or its path. start, end: times, as text (Scene.tdb) or seconds past J2000
         TDB; step: [s]. The steps are start, start + step, ... before the end. quantities: one or more of "lit_fraction" (of
         the time, 0 to 1: the mean of the visible part of the Sun's disc), "longest_night" ([s] with the disc completely
         hidden: consecutive steps times the step), "earth_fraction" (of the time that the Earth's centre is above the
-        horizon) and "permanent_shadow" (1: the disc is hidden at every step).
+        horizon), "permanent_shadow" (1: the disc is hidden at every step) and "station_fraction" (of the time that one of `stations`
+        has the cell in sight: direct to the Earth).
 
         terrain: a Terrain or its name; a map of another ground is then rejected. body: that the map lies on; default: the
         one that its CRS names. sun, earth: arrays (n, 3) of the centres [m] at every step in the terrain's frame, in place
         of start, end and the ephemeris; earth only with sun. eclipses: the Earth eclipses the Sun over the Moon, and the
         Moon over the Earth, as discs of their largest radii, in "lit_fraction": an eclipse is no night, and no shadow.
         With sun nothing eclipses it.
+
+        stations: up to 100 BodySites on the Earth, for "station_fraction". One has a cell in sight while it stands above the
+        cell's horizon, and the middle of the map is station_mask [deg] or more over the station's horizontal.
 
         On a plane the Sun's direction is that at the middle of the map. Where nothing is in sight, and on a plane below
         0, the horizon is level. The other arguments and errors are those of horizon_map()."""
@@ -122,6 +127,12 @@ class Maps:
             message.sun_position.extend(_places(sun, "sun", about))
         if earth is not None:
             message.earth_position.extend(_places(earth, "earth", about))
+        for station in [stations] if isinstance(stations, BodySite) else items(stations, "the stations", about, "dspace.BodySites"):
+            if not isinstance(station, BodySite) or str(station.body).lower() not in ("earth", "399"):
+                reject(about, "a station", station, "a dspace.BodySite on the Earth", WrongType)
+            put(message.station.add(), about, longitude_deg=station.longitude_deg, latitude_deg=station.latitude_deg,
+                height=station.height, geodetic=station.geodetic)
+        put(message, about, station_mask_deg=station_mask)
         message.eclipses = flag(eclipses, "eclipses", about)
         quantities = _put_quantities(message, quantities, LIT, about)
         return self._make(command, message, about, path, quantities, replace, threads, progress, deadline)

@@ -17,6 +17,16 @@ class BodySite:
 
 
 @dataclass(frozen=True)
+class Orbiter:
+    """A craft on a path about a body: a target of contacts. path: an OEM or .xyzv file, States, a Conic, or a Trajectory of a
+    scene; in `axes` about the centre of `body` (a name or NAIF id). axes: a reference frame such as "J2000" or "MOON_ME". What
+    is None is what the file names; axes that no file names are J2000. Times of States are seconds past J2000 TDB."""
+    path: object
+    body: object = None
+    axes: object = None
+
+
+@dataclass(frozen=True)
 class Panel:
     """A flat solar panel. area [m^2]; efficiency of the cells, 0 to 1. Its normal points to azimuth_deg (clockwise from
     north) and elevation_deg (default: up). tracking: "fixed", "vertical" (it turns about the vertical, its normal level) or

@@ -78,8 +78,10 @@ class Horizon:
     where no terrain with longitudes and latitudes is below the place.
 
     image_elevation_deg (n,): by pictures (method "image" or "both"), the upper edge of the highest pixel; NaN: above the pictures,
-    which end 35 to 45 degrees high; else None. image_pixel_deg: the largest angle of a pixel. With "image" elevation_deg is the
-    same, distance and point are NaN."""
+    which end 35 to 45 degrees high; else None. image_pixel_deg: the largest angle of a pixel. image_distance (n,), image_point
+    (n, 3): of that pixel's ray, as distance and point. image_cameras: the Poses of the four pictures (90 degrees wide and high,
+    towards azimuths 0, 90, 180 and 270) in the root: X right, Y down, Z forward. method: that it was measured by; with "image"
+    elevation_deg, distance and point are those of the pictures."""
     azimuth_deg: np.ndarray
     elevation_deg: np.ndarray
     distance: np.ndarray
@@ -89,13 +91,17 @@ class Horizon:
     first_deg: object = None
     image_elevation_deg: object = None
     image_pixel_deg: object = None
+    image_distance: object = None
+    image_point: object = None
+    image_cameras: object = None
+    method: str = "exact"
 
     @property
     def image_difference_deg(self):
         """By how much pictures show the horizon higher than rays find it [deg], (n,), NaN above the pictures; None unless the
         method was "both". Up to image_pixel_deg is a pixel; more is distant ground that is drawn by coarser posts (a larger
         level_size of the terrain makes it less)."""
-        if self.image_elevation_deg is None or np.isnan(self.distance).all():
+        if self.method != "both":
             return None
         return np.where(self.elevation_deg > -90.0, self.image_elevation_deg - self.elevation_deg, np.nan)
 

@@ -3,6 +3,7 @@ import numpy as np
 
 from dspace._core.fields import array_of, flag, integer, put, put_given, reject
 from dspace.errors import InvalidArgument, WrongType
+from dspace.frames.poses import Pose
 from dspace.measure.obstacles import object_ids, put_measuring
 from dspace.measure.results import Horizon, LinesOfSight
 from dspace.terrain.site import Site
@@ -72,7 +73,7 @@ class Sights:
         place: one place, as for line_of_sight(): a Site, a Frame, a path, or a point (3,) in `frame`. North is that of the
         terrain below the place; without terrain the Y axis of the place's frame, whose Z axis is up. terrain, objects,
         hide, without, deadline and errors: as for line_of_sight(). method: "exact"; "image", by four pictures of 90 degrees, or
-        "both": image_elevation_deg beside the exact results. resolution: pixels along a side of a picture."""
+        "both": image_elevation_deg and more beside the exact results. resolution: pixels along a side of a picture."""
         about = "horizon"
         command = self._scene._command()
         message = command.horizon
@@ -90,12 +91,16 @@ class Sights:
         objects = np.array([self._cached(cache, id) for id in reply.object], dtype=object)
         image = np.array(reply.image_elevation_deg) if method != "exact" else None
         elevation, distance, point = (np.array(values) for values in (reply.elevation_deg, reply.distance, reply.point))
+        seen = {}
+        if method != "exact":
+            seen = {"image_distance": np.array(reply.image_distance), "image_point": np.array(reply.image_point).reshape(-1, 3),
+                    "image_cameras": tuple(_pose_of(pose) for pose in reply.image_camera)}
         if method == "image":
-            elevation, distance, point = image.copy(), np.full(azimuths, np.nan), np.full(3 * azimuths, np.nan)
+            elevation, distance, point = image.copy(), seen["image_distance"].copy(), seen["image_point"].copy()
             objects = np.full(azimuths, None)
         return Horizon(np.arange(azimuths) * (360.0 / azimuths), elevation, distance, point.reshape(-1, 3), objects,
                        np.array([origin.x, origin.y, origin.z]), reply.first_deg if reply.HasField("first_deg") else None, image,
-                       reply.image_pixel_deg if method != "exact" else None)
+                       reply.image_pixel_deg if method != "exact" else None, method=method, **seen)
 
     # --- Arguments -----------------------------------------------------------------------------
 
@@ -134,6 +139,11 @@ class Sights:
                             of([s.fresnel_free for s in sights]) if waves and method != "image" else None,
                             of([s.image_clear for s in sights], bool) if method != "exact" else None,
                             reply.image_pixel_deg if method != "exact" else None)
+
+
+def _pose_of(message):
+    p, q = message.position, message.rotation
+    return Pose((p.x, p.y, p.z), (q.w, q.x, q.y, q.z))
 
 
 class _Points:

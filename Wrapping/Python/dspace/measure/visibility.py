@@ -4,12 +4,15 @@ import numpy as np
 from dspace._core import wire
 from dspace._core.fields import array_of, flag, items, put, put_given, put_vector, real, reject, text, word
 from dspace.errors import InvalidArgument, WrongType
-from dspace.measure.plans import Battery, BodySite, Panel
+from dspace.frames.frame import Frame
+from dspace.measure.plans import Battery, BodySite, Orbiter, Panel
 from dspace.measure.results import Contact, Horizon, Moment, PowerProfile, SkyTrack
 from dspace.sky.places import put_place
 from dspace.terrain.site import Site
+from dspace.trajectories.states import put_path
 
 PLACE = "a Site, a BodySite, a Frame or the path of one"
+TARGET = "a name or NAIF id of a body, a BodySite, an Orbiter, a Frame or the path of one with a '/'"
 TRACKING = {"fixed": 0, "vertical": 1, "full": 2}  # ProfilePower.Panel.Tracking
 
 
@@ -25,8 +28,9 @@ class Visibility:
         place: a Site (Terrain.site, of one point) above terrain with longitudes and latitudes, a BodySite, or a Frame that
         follows the time or hangs on one (or its path), whose axes are X east, Y north, Z up. The scene and its time do not
         change. body: of a Site: a name or NAIF id; default: the one that the terrain's CRS names. target: the name or NAIF
-        id of a body or spacecraft (its centre), or a BodySite of another body. times: seconds past J2000 TDB, a number or an
-        array of one dimension, at most 2,000,000.
+        id of a body or spacecraft (its centre); a BodySite of another body; an Orbiter; or a Frame (or its path, with a "/": "/rover") that
+        follows the time, hangs on one that does, or moves along a Trajectory below one. times: seconds past J2000 TDB, a number or an array
+        of one dimension, at most 2,000,000.
 
         Directions have light time and stellar aberration, without refraction."""
         about = "sky track"
@@ -47,13 +51,14 @@ class Visibility:
                  deadline=None):
         """Finds when targets stand above the horizon of a place. Returns a list of Contact, by target and time.
 
-        place, body: as for sky_track(). targets: one or a list (at most 1,000) of names or NAIF ids of bodies and spacecraft,
-        and of BodySite: stations of other bodies, such as dspace.BodySite("earth", -116.89, 35.43, 1000.0).
+        place, body: as for sky_track(). targets: one or a list (at most 1,000) of what sky_track() takes: names or NAIF ids of
+        bodies and spacecraft; a BodySite, a station of another body, such as dspace.BodySite("earth", -116.89, 35.43, 1000.0); an
+        Orbiter, such as dspace.Orbiter("orbit.oem"); Frames.
         start, end: seconds past J2000 TDB, or texts as for tdb().
 
         mask: the horizon of the place: one elevation [deg], a Horizon (Scene.horizon), or elevations at evenly spaced
         azimuths, clockwise from north. station_mask [deg]: the least elevation of the place over a station's horizontal.
-        upper=True: the top of a body's disc counts, as for sunrise; else its centre. Other bodies do not hide a target.
+        upper=True: the top of a body's disc counts, as for sunrise; else its centre. Bodies do not hide a target: the mask does.
 
         Rise and set are found by samples every `step` seconds (at most 2,000,000) and bisection, to 1 ms. Contacts and gaps
         shorter than a step are found too, unless two of them lie within two steps. deadline: longest time [s].
@@ -64,8 +69,8 @@ class Visibility:
         command = self._scene._command()
         message = command.find_contacts
         self._put_place(message.place, place, body, about)
-        single = isinstance(targets, (str, int, BodySite))
-        targets = [targets] if single else items(targets, "the targets", about, "names of bodies, or BodySites")
+        single = isinstance(targets, (str, int, BodySite, Orbiter, Frame))
+        targets = [targets] if single else items(targets, "the targets", about, f"a list of {TARGET}")
         for target in targets:
             self._put_target(message.target.add(), target, station_mask, about, flag(upper, "upper", about))
         self._put_span(message, start, end, step, about)
@@ -146,9 +151,19 @@ class Visibility:
                 height=target.height, geodetic=target.geodetic)
             put(message, about, station_mask_deg=station_mask)
             return
+        if isinstance(target, Orbiter):
+            if target.body is not None:
+                message.body = text(str(target.body), "the orbiter's body", about)
+            if target.axes is not None:
+                message.axes = text(target.axes, "the orbiter's axes", about, "the name of a reference frame")
+            put_path(message.path, target.path, "orbiter")
+            return
+        if isinstance(target, Frame) or isinstance(target, str) and "/" in target:
+            message.at.frame = self._scene._frame_id(target if isinstance(target, Frame) else target.lstrip("/"))
+            return
         if isinstance(target, int) and not isinstance(target, bool):
             target = str(target)
-        message.body = text(target, "the target", about, "a name or NAIF id of a body, or a dspace.BodySite")
+        message.body = text(target, "the target", about, TARGET)
         message.upper = upper
 
     def _put_span(self, message, start, end, step, about):

@@ -19,6 +19,7 @@ from dspace.measure.lines import Lines
 from dspace.measure.lit import Lit
 from dspace.measure.maps import Maps
 from dspace.measure.scans import Scans
+from dspace.measure.sight_contacts import SightContacts
 from dspace.measure.sights import Sights
 from dspace.measure.visibility import Visibility
 from dspace.objects.fragments import Fragment, Light, put_light
@@ -344,6 +345,7 @@ class Scene(Strict):
     add_lens_footprint = delegate(LensOrnaments, "add_lens_footprint")
     sky_track = delegate(Visibility, "sky_track")
     contacts = delegate(Visibility, "contacts")
+    sight_contacts = delegate(SightContacts, "sight_contacts")
     power_profile = delegate(Visibility, "power_profile")
     horizon_map = delegate(Maps, "horizon_map")
     viewshed = delegate(Maps, "viewshed")

@@ -9,6 +9,7 @@
 #include <dspace/commands/measure/MapJobs.h>
 #include <dspace/crs/CrsTransform.h>
 #include <dspace/ephemeris/BodyNames.h>
+#include <dspace/ephemeris/Fallbacks.h>
 #include <dspace/interpreter/Registry.h>
 #include <dspace/maps/Illumination.h>
 #include <dspace/maps/Viewshed.h>
@@ -17,6 +18,7 @@
 #include <dspace/proto/maps.pb.h>
 #include <dspace/sky/KernelSet.h>
 #include <dspace/sky/SkyEclipse.h>
+#include <dspace/sky/SkyView.h>
 #include <dspace/state/TerrainBody.h>
 #include <dspace/time/TimeSteps.h>
 
@@ -185,10 +187,13 @@ IlluminationOptions::Quantity IlluminationOf(int quantity) {
     return Q::EarthFraction;
   case v1::IlluminationMap::PERMANENT_SHADOW:
     return Q::PermanentShadow;
+  case v1::IlluminationMap::STATION_FRACTION:
+    return Q::StationFraction;
   default:
     Reject("command illumination_map",
            "a quantity is " + std::to_string(quantity) +
-               "; accepted: LIT_FRACTION, LONGEST_NIGHT, EARTH_FRACTION, PERMANENT_SHADOW");
+               "; accepted: LIT_FRACTION, LONGEST_NIGHT, EARTH_FRACTION, PERMANENT_SHADOW, "
+               "STATION_FRACTION");
   }
 }
 
@@ -235,6 +240,41 @@ PlaneAxes AxesOfPlane(const HorizonMap& horizons) {
   return {turn * axes.toLocal, axes.position};
 }
 
+// The stations of the command that see the middle of the map over their masks, at each time.
+void FindStations(const Context& context, const v1::IlluminationMap& command,
+                  const HorizonMap& horizons, int body, const std::vector<double>& times,
+                  IlluminationOptions& options) {
+  const SkyMotions& sky = context.scene->sky;
+  const Ephemeris& ephemeris = sky.kernels->GetEphemeris();
+  const Frames& frames = sky.kernels->GetFrames();
+  const PlaneAxes middle = AxesOfPlane(horizons);
+  dspace::SkyPlace place;
+  place.body = body;
+  place.frame = frames.Table().BodyFixed(body).name;
+  place.axes.position = middle.middle;
+  std::vector<dspace::SkyPlace> stations;
+  for (const v1::CelestialPlace::Site& site : command.station()) {
+    v1::CelestialPlace at;
+    at.set_body("earth");
+    *at.mutable_site() = site;
+    stations.push_back(SkyPlaceOf(*sky.kernels, sky.PlaceOf(at), Pose()));
+  }
+  for (const double tdb : times) {
+    FallbackScope::Begin(tdb);
+    std::vector<Eigen::Vector3d>& seen = options.stations_S.emplace_back();
+    for (const dspace::SkyPlace& station : stations) {
+      const SightedPoint point = SightPoint(
+          ephemeris, frames, place, [&](double) { return station; }, tdb);
+      if (ElevationFrom(frames, point, tdb) >= command.station_mask_deg()) {
+        const Eigen::Vector3d away = frames.Rotation("J2000", place.frame, tdb) *
+                                     Aberrated(point.away, point.observer.velocity);
+        seen.push_back(horizons.Placement().OnBody() ? Eigen::Vector3d(middle.middle + away)
+                                                     : Eigen::Vector3d(middle.toMap * away));
+      }
+    }
+  }
+}
+
 void FindBodies(const Context& context, const v1::IlluminationMap& command,
                 const HorizonMap& horizons, bool earth, IlluminationOptions& options) {
   const std::string name = "command illumination_map";
@@ -277,6 +317,12 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
     find(*eclipser, options.eclipser_S);
     options.eclipserRadius = BodyRadii(kernels.GetFrames().Pool(), *eclipser).maxCoeff();
   }
+  if (command.station_size() > 0) {
+    if (body == names.IdOf("earth")) {
+      Reject(name, "the map is of the Earth, and its stations are on it; accepted: another body");
+    }
+    FindStations(context, command, horizons, body, times, options);
+  }
 }
 
 void MapIllumination(const Context& context, MapJobs& jobs, const v1::IlluminationMap& command) {
@@ -287,12 +333,22 @@ void MapIllumination(const Context& context, MapJobs& jobs, const v1::Illuminati
     auto options = std::make_shared<IlluminationOptions>();
     options->step_s = command.step_s();
     bool earth = false;
+    bool links = false;
     if (command.quantity_size() > 0) {
       options->quantities.clear();
     }
     for (const int quantity : command.quantity()) {
       options->quantities.push_back(IlluminationOf(quantity));
       earth |= options->quantities.back() == IlluminationOptions::Quantity::EarthFraction;
+      links |= options->quantities.back() == IlluminationOptions::Quantity::StationFraction;
+    }
+    constexpr int MostStations = 100;
+    if (links != (command.station_size() > 0) || command.station_size() > MostStations) {
+      Reject(name, "it has " + std::to_string(command.station_size()) + " stations; accepted: " +
+                       (links ? "1 to 100 for STATION_FRACTION" : "none without STATION_FRACTION"));
+    }
+    if (links && command.sun_position_size() > 0) {
+      Reject(name, "it has stations and positions of the Sun; accepted: stations with times");
     }
     std::shared_ptr<const MapGround> ground;
     if (!command.terrain().empty()) {

@@ -94,18 +94,23 @@ bool MeasuredPictures::Clear(const Eigen::Vector3d& from_R, const Eigen::Vector3
   return *reach >= Reach * along.norm();
 }
 
-std::vector<double> MeasuredPictures::Horizon(const Eigen::Vector3d& place_R, const LevelAxes& axes,
-                                              std::size_t count) {
-  std::vector<double> elevations(count);
+MeasuredPictures::Skyline MeasuredPictures::Horizon(const Eigen::Vector3d& place_R,
+                                                    const LevelAxes& axes, std::size_t count) {
+  constexpr double Nan = std::numeric_limits<double>::quiet_NaN();
+  Skyline found;
+  found.elevation_deg.resize(count);
+  found.distance.assign(count, std::numeric_limits<double>::infinity());
+  found.point.assign(count, Eigen::Vector3d::Constant(Nan));
   const int size = this->Resolution_;
+  const double half = 0.5 * size; // [pixels] per unit of tangent
   Projection projection;
   projection.verticalFov_deg = 90.0;
   projection.nearDistance = 1e-3;
   for (int side = 0; side < 4; ++side) {
     const double middle = side * M_PI / 2.0;
     const Eigen::Vector3d forward = std::cos(middle) * axes.north + std::sin(middle) * axes.east;
-    const Picture picture =
-        this->Series(size).Take(projection, CameraAt(place_R, forward, axes.up));
+    const Pose& camera = found.cameras.emplace_back(CameraAt(place_R, forward, axes.up));
+    const Picture picture = this->Series(size).Take(projection, camera);
     for (std::size_t i = 0; i < count; ++i) {
       double right_deg = 360.0 * double(i) / double(count) - 90.0 * side;
       right_deg -= 360.0 * std::round(right_deg / 360.0);
@@ -113,11 +118,16 @@ std::vector<double> MeasuredPictures::Horizon(const Eigen::Vector3d& place_R, co
         continue;
       }
       const HorizonReading reading = ReadHorizon(picture.range, size, right_deg);
-      elevations[i] =
-          reading.over ? std::numeric_limits<double>::quiet_NaN() : reading.elevation_deg;
+      found.elevation_deg[i] = reading.over ? Nan : reading.elevation_deg;
+      if (reading.range > 0.0f) {
+        const Eigen::Vector3d ray((reading.column + 0.5 - half) / half,
+                                  (reading.row + 0.5 - half) / half, 1.0);
+        found.distance[i] = double(reading.range);
+        found.point[i] = camera.Apply(double(reading.range) * ray.normalized());
+      }
     }
   }
-  return elevations;
+  return found;
 }
 
 std::pair<double, double> MeasuredPictures::Seen(ObjectId object, const std::vector<Face>& faces,

@@ -32,10 +32,16 @@ public:
   // A telephoto picture from one place to the other: whether the ray of its middle pixel reaches to
   // 1e-4 of the distance before the end. `reach`: how far it does [m].
   bool Clear(const Eigen::Vector3d& from_R, const Eigen::Vector3d& to_R, double* reach);
-  // Four pictures of 90 degrees. NaN: the horizon is above the picture, more than 35 degrees high.
-  // -90: nothing.
-  std::vector<double> Horizon(const Eigen::Vector3d& place_R, const LevelAxes& axes,
-                              std::size_t count);
+  // Four pictures of 90 degrees, towards north, east, south and west.
+  struct Skyline {
+    // NaN: the horizon is above the picture, more than 35 degrees high. -90: nothing.
+    std::vector<double> elevation_deg;
+    std::vector<double> distance; // [m] of the highest pixel that was hit; infinity: nothing
+    // Where its ray meets the obstacle, in the root [m]; NaN: nothing.
+    std::vector<Eigen::Vector3d> point;
+    std::vector<Pose> cameras; // X_RC: X right, Y down, Z forward
+  };
+  Skyline Horizon(const Eigen::Vector3d& place_R, const LevelAxes& axes, std::size_t count);
   // The area [m^2] of an object that a far observer in a direction sees, and that of a pixel. The
   // picture spans the faces.
   std::pair<double, double> Seen(ObjectId object, const std::vector<Face>& faces,

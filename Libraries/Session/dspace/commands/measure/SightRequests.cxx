@@ -169,8 +169,15 @@ void FindHorizon(const Context& context, v1::Horizon& command) {
   }
   if (methods.image) {
     MeasuredPictures pictures(context, command.measuring(), scene, name);
-    const std::vector<double> elevations = pictures.Horizon(Lifted(scene, spot), axes, count);
-    reply.mutable_image_elevation_deg()->Add(elevations.begin(), elevations.end());
+    const MeasuredPictures::Skyline seen = pictures.Horizon(Lifted(scene, spot), axes, count);
+    reply.mutable_image_elevation_deg()->Add(seen.elevation_deg.begin(), seen.elevation_deg.end());
+    reply.mutable_image_distance()->Add(seen.distance.begin(), seen.distance.end());
+    for (const Eigen::Vector3d& point : seen.point) {
+      reply.mutable_image_point()->Add(point.data(), point.data() + 3);
+    }
+    for (const Pose& camera : seen.cameras) {
+      Put(camera, reply.add_image_camera());
+    }
     reply.set_image_pixel_deg(pictures.PixelAngle());
   }
   Put(spot.p_R, reply.mutable_from());

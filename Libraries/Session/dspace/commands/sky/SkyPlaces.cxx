@@ -1,5 +1,10 @@
 #include <dspace/commands/sky/SkyPlaces.h>
 
+#include <algorithm>
+#include <memory>
+#include <utility>
+#include <vector>
+
 #include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
 #include <dspace/state/TerrainBody.h>
@@ -45,20 +50,104 @@ dspace::SkyPlace PlaceOfSite(const Context& context, const v1::SkyPlace& asked) 
   return out;
 }
 
+// The nearest of a frame and its ancestors that says what it stands for.
+FrameId PlacedAbove(const Context& context, FrameId frame) {
+  const auto& moving = context.scene->sky.frames;
+  while (frame != RootFrame && !moving.count(frame)) {
+    frame = context.Frames().Parent(frame);
+  }
+  return frame;
+}
+
 dspace::SkyPlace PlaceOnFrame(const Context& context, const v1::Place& place) {
   const FrameTree& tree = context.Frames();
   const SkyMotions& sky = context.scene->sky;
   const FrameId frame = ToFrame(place.frame());
-  FrameId above = frame;
-  while (above != RootFrame && !sky.frames.count(above)) {
-    above = tree.Parent(above);
-  }
+  const FrameId above = PlacedAbove(context, frame);
   Pose X = tree.RelativePose(above, frame);
   X.position = X.Apply(ToVector(place.position()));
   return SkyPlaceOf(*sky.kernels, sky.PlaceOf(tree, above), X);
 }
 
+// One frame of a chain: at rest, or along a trajectory.
+struct Link {
+  Pose pose;
+  const TrajectoryObject* trajectory = nullptr;
+  std::string label;
+};
+
+Pose PoseOf(const Link& link, double tdb) {
+  if (!link.trajectory) {
+    return link.pose;
+  }
+  const Trajectory& path = *link.trajectory->Shown();
+  const Eigen::Vector3d position = PositionAt(path, tdb, link.label);
+  std::string warning; // of an attitude that ends
+  Pose X = link.trajectory->FollowerPose(std::max(tdb, path.Span().begin), warning);
+  if (!warning.empty()) {
+    Reject(link.label, "its trajectory has no attitude at " + NumberText(tdb) +
+                           " s; accepted: times that have one");
+  }
+  X.position = position;
+  return X;
+}
+
 } // namespace
+
+Eigen::Vector3d PositionAt(const Trajectory& path, double tdb, const std::string& label) {
+  constexpr double Before = 3.0; // [s]
+  const std::vector<TimeSpan> parts = path.Parts();
+  const double nearest = NearestTime(parts, tdb);
+  if (tdb == nearest) {
+    return path.At(tdb).position;
+  }
+  if (!(tdb < path.Span().begin && path.Span().begin - tdb <= Before)) {
+    Reject(label, "no state is known at " + NumberText(tdb) +
+                      " s, when the light left; accepted: times from " +
+                      NumberText(path.Span().begin) + " to " + NumberText(path.Span().end) +
+                      " s that have one");
+  }
+  const dspace::State first = path.At(nearest);
+  return first.position + (tdb - nearest) * first.velocity;
+}
+
+TimedPlace TimedPlaceOnFrame(const Context& context, const v1::Place& place) {
+  const FrameTree& tree = context.Frames();
+  const SkyMotions& sky = context.scene->sky;
+  const FrameId above = PlacedAbove(context, ToFrame(place.frame()));
+  std::vector<Link> chain; // from the place's frame up
+  bool moves = false;
+  for (FrameId frame = ToFrame(place.frame()); frame != above; frame = tree.Parent(frame)) {
+    Link link{tree.LocalPose(frame), nullptr, "frame '" + tree.Path(frame) + "'"};
+    for (const auto& [id, trajectory] : context.scene->trajectories) {
+      if (trajectory->Follower() == frame) {
+        link.trajectory = trajectory.get();
+        moves = true;
+      }
+    }
+    chain.push_back(std::move(link));
+  }
+  const CelestialPlace base = sky.PlaceOf(tree, above);
+  const std::shared_ptr<const KernelSet> kernels = sky.kernels;
+  const Eigen::Vector3d point = ToVector(place.position());
+  const auto at = [chain, base, kernels, point](double tdb) {
+    Pose X;
+    for (const Link& link : chain) {
+      X = PoseOf(link, tdb) * X;
+    }
+    X.position = X.Apply(point);
+    return SkyPlaceOf(*kernels, base, X);
+  };
+  return {at, moves};
+}
+
+TimedPlace TimedPlaceUnderSky(const Context& context, const v1::SkyPlace& asked,
+                              const std::string& command) {
+  if (asked.has_place()) {
+    return TimedPlaceOnFrame(context, asked.place());
+  }
+  return {[place = PlaceUnderSky(context, asked, command)](double) { return place; }, false};
+}
 
 dspace::SkyPlace PlaceUnderSky(const Context& context, const v1::SkyPlace& asked,
                                const std::string& command) {

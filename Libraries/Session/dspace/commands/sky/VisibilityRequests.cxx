@@ -2,6 +2,7 @@
 #include <optional>
 
 #include <dspace/Checks.h>
+#include <dspace/commands/objects/TrajectoryMessages.h>
 #include <dspace/commands/sky/SkyPlaces.h>
 #include <dspace/commands/sky/SkyTools.h>
 #include <dspace/ephemeris/Fallbacks.h>
@@ -24,16 +25,62 @@ HorizonLine LineOf(const v1::HorizonMask& mask) {
   return HorizonLine({mask.elevation_deg().begin(), mask.elevation_deg().end()}, mask.first_deg());
 }
 
-dspace::ContactTarget TargetOf(const Context& context, const v1::ContactTarget& asked) {
-  const SkyMotions& sky = context.scene->sky;
+// A point on a path about a body.
+dspace::ContactTarget CraftOf(const KernelSet& kernels, v1::ContactTarget& asked,
+                              const std::string& label) {
+  const TrajectorySource source = ToSource(*asked.mutable_path(), label);
+  const std::string& center = asked.body().empty() ? source.center : asked.body();
+  if (center.empty()) {
+    Reject(label, "neither it nor its path names the body that the path is about; accepted: a "
+                  "body's name or NAIF id");
+  }
+  const std::string& axes = !asked.axes().empty()   ? asked.axes()
+                            : !source.frame.empty() ? source.frame
+                                                    : "J2000";
+  dspace::CelestialPlace place;
+  place.body = kernels.GetEphemeris().Names().IdOf(center);
+  place.axes = kernels.GetFrames().Table().Get(axes).name;
   dspace::ContactTarget target;
+  target.body = place.body;
+  target.point = [place, path = source.path, label, &kernels](double tdb) {
+    Pose X;
+    X.position = PositionAt(*path, tdb, label);
+    return SkyPlaceOf(kernels, place, X);
+  };
+  return target;
+}
+
+dspace::ContactTarget TargetOf(const Context& context, v1::ContactTarget& asked,
+                               const std::string& label) {
+  const SkyMotions& sky = context.scene->sky;
+  if (asked.moving_case() != v1::ContactTarget::MOVING_NOT_SET &&
+      (asked.has_station() || asked.upper() || asked.station_mask_deg() != 0.0)) {
+    Reject(label, "it moves along a path or with a frame, and has a station, its mask or an upper "
+                  "limb; accepted: those of bodies");
+  }
+  if (!asked.has_path() && !asked.axes().empty()) {
+    Reject(label, "it has axes '" + asked.axes() + "' and no path; accepted: axes of a path");
+  }
+  if (asked.has_path()) {
+    return CraftOf(*sky.kernels, asked, label);
+  }
+  dspace::ContactTarget target;
+  if (asked.has_at()) {
+    if (!asked.body().empty()) {
+      Reject(label, "it has a frame and the body '" + asked.body() + "'; accepted: one of them");
+    }
+    target.point = TimedPlaceOnFrame(context, asked.at()).at;
+    return target;
+  }
   target.body = sky.kernels->GetEphemeris().Names().IdOf(asked.body());
-  target.stationMask_deg = asked.station_mask_deg();
   if (asked.has_station()) {
     v1::CelestialPlace place;
     place.set_body(asked.body());
     *place.mutable_site() = asked.station();
-    target.station = SkyPlaceOf(*sky.kernels, sky.PlaceOf(place), Pose());
+    target.point = [station = SkyPlaceOf(*sky.kernels, sky.PlaceOf(place), Pose())](double) {
+      return station;
+    };
+    target.stationMask_deg = asked.station_mask_deg();
   }
   return target;
 }
@@ -46,8 +93,9 @@ template<class Message> Deadline DeadlineOf(const Message& command, const std::s
 void TrackSky(const Context& context, v1::TrackSky& command) {
   const std::string name = "command track_sky";
   const KernelSet& kernels = *context.scene->sky.kernels;
-  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
-  const dspace::ContactTarget target = TargetOf(context, command.target());
+  const TimedPlace place = TimedPlaceUnderSky(context, command.place(), name);
+  const dspace::ContactTarget target =
+      TargetOf(context, *command.mutable_target(), name + ", its target");
   if (command.time_s_size() > MostSteps) {
     Reject(name, std::to_string(command.time_s_size()) + " times; accepted: 1 to 2,000,000");
   }
@@ -59,7 +107,7 @@ void TrackSky(const Context& context, v1::TrackSky& command) {
   for (const double tdb : command.time_s()) {
     FallbackScope::Begin(tdb);
     const Sighted seen =
-        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, level, target, tdb);
+        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place.at(tdb), level, target, tdb);
     reply.add_azimuth_deg(seen.direction.azimuth_deg);
     reply.add_elevation_deg(seen.direction.elevation_deg);
     reply.add_range(seen.range);
@@ -78,7 +126,7 @@ void Put(double time, const Sighted& seen, v1::ContactsReply::Moment* moment) {
 void SearchContacts(const Context& context, v1::FindContacts& command) {
   const std::string name = "command find_contacts";
   const KernelSet& kernels = *context.scene->sky.kernels;
-  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
+  const TimedPlace place = TimedPlaceUnderSky(context, command.place(), name);
   if (command.target_size() < 1 || command.target_size() > MostTargets) {
     Reject(name, std::to_string(command.target_size()) + " targets; accepted: 1 to 1,000");
   }
@@ -88,13 +136,14 @@ void SearchContacts(const Context& context, v1::FindContacts& command) {
   const Deadline deadline = DeadlineOf(command, name);
   v1::ContactsReply reply;
   for (int i = 0; i < command.target_size(); ++i) {
-    const dspace::ContactTarget target = TargetOf(context, command.target(i));
+    const dspace::ContactTarget target =
+        TargetOf(context, *command.mutable_target(i), name + ", target " + std::to_string(i));
     const bool upper = command.target(i).upper();
     const auto look = [&](double tdb) {
       deadline.Check();
       FallbackScope::Begin(tdb);
-      return LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place, horizon, target, tdb,
-                      upper);
+      return LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place.at(tdb), horizon, target,
+                      tdb, upper);
     };
     for (const Contact& found : FindContacts(look, command.start_s(), command.end_s(), step)) {
       v1::ContactsReply::Contact* contact = reply.add_contact();
@@ -135,7 +184,11 @@ SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& labe
 void ProfilePowerOf(const Context& context, v1::ProfilePower& command) {
   const std::string name = "command profile_power";
   const KernelSet& kernels = *context.scene->sky.kernels;
-  const dspace::SkyPlace place = PlaceUnderSky(context, command.place(), name);
+  const TimedPlace timed = TimedPlaceUnderSky(context, command.place(), name);
+  if (timed.moves) {
+    Reject(name, "its place moves along a trajectory; accepted: a place that rests on its body");
+  }
+  const dspace::SkyPlace place = timed.at(command.start_s());
   if (command.panel_size() > MostPanels) {
     Reject(name, std::to_string(command.panel_size()) + " panels; accepted: at most 10,000");
   }

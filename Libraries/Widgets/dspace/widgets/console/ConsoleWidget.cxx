@@ -31,6 +31,12 @@ QString CommonStart(const QStringList& words) {
   return start;
 }
 
+// A line that raised, as a script keeps it.
+QString Commented(const QString& source) {
+  return QStringLiteral("# failed: ") +
+         QString(source).replace(QStringLiteral("\n"), QStringLiteral("\n# "));
+}
+
 } // namespace
 
 ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
@@ -72,6 +78,9 @@ ConsoleWidget::ConsoleWidget(PythonInterpreter* interpreter, QWidget* parent)
   connect(this->Prompt_, &QToolButton::clicked, this, &ConsoleWidget::Enter);
   connect(this->Line_, &QLineEdit::returnPressed, this, &ConsoleWidget::Enter);
   connect(interpreter, &PythonInterpreter::written, this, [this](const QString& text, bool error) {
+    this->Raised_ =
+        this->Raised_ || (error && (text.contains(QStringLiteral("Traceback (most recent")) ||
+                                    text.contains(QStringLiteral("SyntaxError: "))));
     this->Append(text, error ? Tone::Error : Tone::Output);
   });
 }
@@ -118,8 +127,17 @@ bool ConsoleWidget::Run(const QString& source) {
   for (int i = 0; i < lines.size(); ++i) {
     this->Append((i == 0 ? ">>> " : "... ") + lines[i] + "\n", Tone::Input);
   }
+  const int at = this->Script_.size();
   this->Script_ << source;
-  return this->Interpreter_->Run(source);
+  const bool done = this->Interpreter_->Run(source);
+  if (!done) {
+    this->Script_[at] = Commented(source);
+  }
+  return done;
+}
+
+bool ConsoleWidget::IsInUse() const {
+  return !this->Line_->text().isEmpty() || !this->Pending_.isEmpty() || !this->History_.isEmpty();
 }
 
 QString ConsoleWidget::Script() const {
@@ -135,10 +153,12 @@ void ConsoleWidget::Enter() {
   }
   this->Recalled_ = 0;
   const QString source = this->Pending_.isEmpty() ? line : this->Pending_ + '\n' + line;
+  const int at = this->Script_.size();
+  this->Raised_ = false;
   const bool more = this->Interpreter_->Push(source);
   this->Pending_ = more ? source : QString();
   if (!more && !source.trimmed().isEmpty()) {
-    this->Script_ << source;
+    this->Script_.insert(at, this->Raised_ ? Commented(source) : source);
   }
   this->Prompt_->setText(more ? QStringLiteral("...") : QStringLiteral(">>>"));
 }

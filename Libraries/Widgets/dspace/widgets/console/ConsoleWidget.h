@@ -25,7 +25,9 @@ public:
 
   // Shows the lines and runs them; false: they raised.
   bool Run(const QString& source);
-  // All lines that were run, as a script.
+  // Something was typed, now or before.
+  bool IsInUse() const;
+  // All lines that were run, as a script; those that raised are comments.
   QString Script() const;
 
 protected:
@@ -47,8 +49,9 @@ private:
   QToolButton* Interrupt_;
   QStringList History_;
   QStringList Script_;
-  QString Pending_;  // lines of a compound statement
-  int Recalled_ = 0; // lines back in the history
+  QString Pending_;     // lines of a compound statement
+  bool Raised_ = false; // the line that runs
+  int Recalled_ = 0;    // lines back in the history
 };
 
 } // namespace dspace::widgets

@@ -58,6 +58,7 @@
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>
 #include <dspace/widgets/window/TelemetryDocks.h>
+#include <dspace/widgets/window/TreeActions.h>
 #include <dspace/widgets/window/ViewBar.h>
 #include <dspace/widgets/window/ViewKeys.h>
 #include <dspace/widgets/window/ViewMenu.h>
@@ -73,6 +74,12 @@ const char* const SceneName = "scene"; // of dspace.Session.scene() without a na
 std::string TextOf(const QJsonObject& answer) {
   return QJsonDocument(answer).toJson(QJsonDocument::Compact).toStdString();
 }
+
+// Of saved scripts.
+const QByteArray ScriptHead =
+    "# A script of DspaceQt. Run it with: DspaceQt THIS_FILE\n"
+    "if \"app\" not in globals():\n"
+    "    raise SystemExit(\"this script needs the window of DspaceQt: DspaceQt FILE.py\")\n\n";
 
 } // namespace
 
@@ -142,6 +149,12 @@ MainWindow::MainWindow(const QString& packages)
       }
       return std::string("{}");
     }
+    if (IsTreeRequest(given)) {
+      if (this->Scenes_) {
+        this->Scenes_->Act(given);
+      }
+      return std::string("{}");
+    }
     return TextOf(Shell::Takes(given) ? this->Shell_->Handle(given)
                                       : this->PlugIns_->Handle(given));
   };
@@ -196,6 +209,13 @@ MainWindow::MainWindow(const QString& packages)
   this->Scenes_ = new ShownScenes(this->Session_, SceneName, tree, timeline, this);
   connect(this->Scenes_, &ShownScenes::failed, this,
           [this](const QString& message) { this->Report(message); });
+  this->Scenes_->SetRunner([this](const QString& line) {
+    if (this->Interpreter_->IsBusy()) {
+      return false;
+    }
+    this->Run(line);
+    return true;
+  });
   connect(timeline, &TimelineWidget::failed, this,
           [this](const QString& message) { this->Report(message); });
   this->TimeDock_ = new QDockWidget(tr("Time"), this);
@@ -479,13 +499,16 @@ void MainWindow::ChooseFiles() {
 }
 
 void MainWindow::SaveScript() {
-  const QString path =
+  QString path =
       QFileDialog::getSaveFileName(this, tr("Save as script"), QString(), tr("Python (*.py)"));
   if (path.isEmpty()) {
     return;
   }
+  if (QFileInfo(path).suffix().isEmpty()) {
+    path += QStringLiteral(".py");
+  }
   QSaveFile file(path); // the old one stays until all is written
-  const QByteArray script = this->Console_->Script().toUtf8();
+  const QByteArray script = ScriptHead + this->Console_->Script().toUtf8();
   if (!file.open(QIODevice::WriteOnly) || file.write(script) != script.size() || !file.commit()) {
     this->Report(tr("%1: %2").arg(path, file.errorString()));
     return;
@@ -551,6 +574,10 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   this->Marks_->Add(widget, of, viewport);
   this->Overlays_->Add(widget, of, viewport);
   this->Libraries_->AddView(widget);
+  if (!this->focusWidget() ||
+      (this->ConsoleDock_->isAncestorOf(this->focusWidget()) && !this->Console_->IsInUse())) {
+    widget->setFocus(); // the keys of views work at once
+  }
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;
   }

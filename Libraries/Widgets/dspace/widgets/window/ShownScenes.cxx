@@ -23,6 +23,7 @@
 #include <dspace/interpreter/Interpreter.h>
 #include <dspace/state/State.h>
 #include <dspace/widgets/scene/SceneCommands.h>
+#include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/timeline/PlaybackTimeSource.h>
 #include <dspace/widgets/timeline/SceneTimeSource.h>
@@ -30,6 +31,7 @@
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
+#include <dspace/widgets/window/TreeActions.h>
 
 namespace dspace::widgets {
 namespace {
@@ -72,6 +74,7 @@ struct ShownScenes::Internals {
   std::map<QObject*, Choice> views;  // with the viewports' names
   QTimer ticks;
   int ticked = 0;
+  Runner runner;
 
   Entry* Find(vtkObject* of) {
     for (Entry& entry : this->entries) {
@@ -135,6 +138,13 @@ struct ShownScenes::Internals {
       of = session;
     }
     Connect(*this->tree, actions);
+    this->tree->SetHandler([this, handler = actions.handler](const SceneRequest& request) {
+      const auto scene = this->tree->Model()->GetScene();
+      const QString line = scene ? LineOf(request, *scene) : QString();
+      if (line.isEmpty() || !this->runner || !this->runner(line)) {
+        handler(request);
+      }
+    });
     this->shown = session;
   }
 
@@ -341,6 +351,25 @@ const session::Telemetry* ShownScenes::TelemetryOf(vtkObject* of, const std::str
 const session::MessageLog* ShownScenes::MessagesOf(vtkObject* of, const std::string& scene) const {
   const session::SceneState* state = this->StateOf(of, scene);
   return state ? &state->messages : nullptr;
+}
+
+void ShownScenes::SetRunner(Runner runner) {
+  this->Impl_->runner = std::move(runner);
+}
+
+void ShownScenes::Act(const QJsonObject& request) {
+  Internals& self = *this->Impl_;
+  SceneActions actions;
+  if (Internals::Entry* entry = self.Find(self.active.first)) {
+    actions = entry->actions[self.active.second].second;
+  }
+  const std::shared_ptr<Scene> scene = actions.source ? actions.source() : nullptr;
+  if (!scene) {
+    throw Error(Error::Kind::NotFound, "scene '" + self.active.second + "'",
+                "it is not in the docks; accepted: a scene that is");
+  }
+  actions.handler(RequestOf(request, *scene));
+  self.tree->Refresh();
 }
 
 QString ShownScenes::Active() const {

@@ -2,10 +2,12 @@
 #ifndef DSPACE_WIDGETS_SHOWN_SCENES_H
 #define DSPACE_WIDGETS_SHOWN_SCENES_H
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
 
+#include <QJsonObject>
 #include <QObject>
 
 class QWidget;
@@ -55,6 +57,13 @@ public:
   const session::Telemetry* TelemetryOf(vtkObject* of, const std::string& scene) const;
   // Likewise: its events and open questions.
   const session::MessageLog* MessagesOf(vtkObject* of, const std::string& scene) const;
+  // Runs a line of Python that stands for what the tree asks for (TreeActions.h); false: it cannot
+  // run now, and the request is carried out without it.
+  using Runner = std::function<bool(const QString& line)>;
+  void SetRunner(Runner runner);
+  // Carries out such a line's request in the scene in the docks. Throws what RequestOf and the
+  // command throw.
+  void Act(const QJsonObject& request);
   // What is in the docks: the text of the list, and its clock.
   QString Active() const;
   TimeSource* Clock() const;

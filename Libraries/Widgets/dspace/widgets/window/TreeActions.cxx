@@ -1,0 +1,85 @@
+#include <dspace/widgets/window/TreeActions.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <utility>
+
+#include <dspace/Error.h>
+#include <dspace/scene/Scene.h>
+#include <dspace/widgets/script/PythonText.h>
+
+namespace dspace::widgets {
+namespace {
+
+using Name = std::pair<SceneAction, const char*>;
+constexpr std::array<Name, 6> Names{{{SceneAction::Chase, "chase"},
+                                     {SceneAction::Focus, "focus"},
+                                     {SceneAction::Show, "show"},
+                                     {SceneAction::Hide, "hide"},
+                                     {SceneAction::Trail, "trail"},
+                                     {SceneAction::Axes, "axes"}}};
+
+bool IsOnlyOne(const Scene& scene, ObjectId id) {
+  const GraphicsObject& object = scene.Object(id);
+  return std::none_of(scene.Objects().begin(), scene.Objects().end(), [&](const auto& entry) {
+    return entry.first != id && entry.second.frame == object.frame &&
+           entry.second.name == object.name;
+  });
+}
+
+} // namespace
+
+QString LineOf(const SceneRequest& request, const Scene& scene) {
+  const auto* name = std::find_if(Names.begin(), Names.end(),
+                                  [&](const Name& each) { return each.first == request.action; });
+  const SceneItem& item = request.item;
+  if (name == Names.end() || !scene.Frames().Contains(item.frame) ||
+      (item.object != 0 && !scene.Objects().count(item.object))) {
+    return {};
+  }
+  QString line = QStringLiteral("app.act(%1, %2")
+                     .arg(Quoted(QString::fromLatin1(name->second)),
+                          Quoted(QString::fromStdString(scene.Frames().Path(item.frame))));
+  if (item.object != 0) {
+    const std::string& called = scene.Object(item.object).name;
+    line += QStringLiteral(", ") + (!called.empty() && IsOnlyOne(scene, item.object)
+                                        ? Quoted(QString::fromStdString(called))
+                                        : QString::number(item.object));
+  }
+  return line + QLatin1Char(')');
+}
+
+bool IsTreeRequest(const QJsonObject& request) {
+  return request["do"].toString() == "tree";
+}
+
+SceneRequest RequestOf(const QJsonObject& request, const Scene& scene) {
+  const std::string action = request["action"].toString().toStdString();
+  const auto* name = std::find_if(Names.begin(), Names.end(),
+                                  [&](const Name& each) { return each.second == action; });
+  if (name == Names.end()) {
+    throw Error(Error::Kind::InvalidArgument, "action",
+                "it is '" + action + "'; accepted: chase, focus, show, hide, trail, axes");
+  }
+  SceneRequest made;
+  made.action = name->first;
+  made.item.frame = scene.Frames().Find(request["frame"].toString().toStdString()); // throws
+  const QJsonValue object = request["object"];
+  if (object.isNull() || object.isUndefined()) {
+    return made;
+  }
+  for (const auto& [id, each] : scene.Objects()) {
+    const bool same = object.isString() ? each.name == object.toString().toStdString()
+                                        : double(id) == object.toDouble(-1.0);
+    if (each.frame == made.item.frame && same) {
+      made.item.object = id;
+      return made;
+    }
+  }
+  throw Error(Error::Kind::NotFound, "object '" + object.toVariant().toString().toStdString() + "'",
+              "it is not on frame '" + scene.Frames().Path(made.item.frame) +
+                  "'; accepted: the name or id of an object on this frame");
+}
+
+} // namespace dspace::widgets
