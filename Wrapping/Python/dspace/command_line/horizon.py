@@ -161,19 +161,17 @@ def draw(figure, horizon, title, paths=(), turn=0.0):
     elevation, distance = (np.append(values, values[0]) for values in (elevation, horizon.distance))
     known = elevation[np.isfinite(elevation)]
     foot = (known.min() - 0.05 * max(np.ptp(known), 1e-3)) if known.size else -90.0
-    above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0)
-    above.plot(azimuth, elevation, color="#5c5348", linewidth=1.0)
-    for (name, path), colour in zip(paths, ("#d98200", "#2c56c8", "#8a2be2", "#2c7a3f", "#b3261e") * len(paths)):
-        azimuths = np.array([row["true_azimuth_deg"] for row in path])
-        along = np.unwrap((azimuths - turn) % 360.0, period=360.0)
-        heights = np.array([row["elevation_deg"] for row in path])
-        for whole in range(int(np.floor(along.min() / 360.0)), int(np.floor(along.max() / 360.0)) + 1):
-            above.plot(along - 360.0 * whole, heights, color=colour, linewidth=1.2, label=name if whole == np.floor(along[0] / 360.0) else None)
     if paths:
         shown = [row["elevation_deg"] for _, path in paths for row in path]
-        foot = min(foot, max(min(shown), -15.0) - 1.0)
+        foot = min(foot, max(min(shown), -5.0) - 1.0)
         above.set_ylim(top=max(*shown, *known, 0.0) + 1.0)
-        above.legend(fontsize=8, loc="upper right")
+    for (name, path), colour in zip(paths, ("#d98200", "#2c56c8", "#8a2be2", "#2c7a3f", "#b3261e") * len(paths)):
+        azimuths = (np.array([row["true_azimuth_deg"] for row in path]) - turn) % 360.0
+        above.plot(azimuths, [row["elevation_deg"] for row in path], ".", color=colour, markersize=1.5, label=name, zorder=1)
+    if paths:
+        above.legend(fontsize=8, loc="upper right", markerscale=6.0)
+    above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0, zorder=2)
+    above.plot(azimuth, elevation, color="#5c5348", linewidth=1.0, zorder=2)
     above.set_ylim(bottom=foot)
     above.axhline(0.0, color="#808080", linewidth=0.6)
     above.set_ylabel("elevation [deg]")

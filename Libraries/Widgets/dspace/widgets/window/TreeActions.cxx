@@ -64,7 +64,12 @@ SceneRequest RequestOf(const QJsonObject& request, const Scene& scene) {
   }
   SceneRequest made;
   made.action = name->first;
-  made.item.frame = scene.Frames().Find(request["frame"].toString().toStdString()); // throws
+  const std::string path = request["frame"].toString().toStdString();
+  made.item.frame = scene.Frames().Find(path);
+  if (made.item.frame == NoFrame) {
+    throw Error(Error::Kind::NotFound, "frame '" + path + "'",
+                "there is no such frame; accepted: the path of a frame in the scene in the docks");
+  }
   const QJsonValue object = request["object"];
   if (object.isNull() || object.isUndefined()) {
     return made;
