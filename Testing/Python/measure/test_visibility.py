@@ -365,3 +365,47 @@ def test_direct_to_earth_maps_are_skyfields(sky, tmp_path, on_body):
         scene.illumination_map(horizons, tmp_path / "no.tif", start=START, end=START + 3600.0, stations=stations)
     with pytest.raises(dspace.WrongType, match="a dspace.BodySite on the Earth"):
         scene.illumination_map(horizons, tmp_path / "no.tif", start=START, end=START + 3600.0, stations=["earth"])
+
+
+def test_profiles_with_the_vehicles_own_shadow(scene):
+    """A tilted panel alone has the profile of the same dspace.Panel. Beside a tower each sample is what lit_area() measures with the
+    sample's own Sun, which no table is between."""
+    moon = scene.add_celestial_frame("moon", "moon", axes="MOON_ME", center="moon", center_axes="MOON_ME")
+    site = scene.add_celestial_frame("site", "moon", site=(20.0, -40.0), parent=moon)
+    azimuth, elevation = np.radians((30.0, 60.0))
+    normal = np.array((np.cos(elevation) * np.sin(azimuth), np.cos(elevation) * np.cos(azimuth), np.sin(elevation)))
+    level = np.cross((0.0, 0.0, 1.0), normal) / np.cos(elevation)
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack((level, np.cross(normal, level), normal))
+    pose[:3, 3] = (0.0, 0.0, 2.0)
+    cells = scene.add_plane(2.0, 1.0, name="cells", frame=site.add_frame("cells", pose=pose))
+    start, end = scene.tdb("2026-01-03"), scene.tdb("2026-02-02")
+    alone = scene.projected_areas(cells, site, rows=39, efficiency=0.3)
+    assert alone.area.shape == (39, 72)
+    table = scene.power_profile(site, alone, start, end, step=6 * 3600.0)
+    plain = scene.power_profile(site, dspace.Panel(2.0, 0.3, azimuth_deg=30.0, elevation_deg=60.0), start, end, step=6 * 3600.0)
+    # Where the Sun passes the panel's plane the table is linear over 5 degrees of azimuth: half of 2.5 degrees at most.
+    assert np.abs(table.power - plain.power).max() < 0.02 * plain.power.max() and plain.power.max() > 500.0
+    assert table.energy_wh == pytest.approx(plain.energy_wh, rel=3e-3)
+    scene.add_box((1.0, 3.0, 4.0), name="tower", frame=site.add_frame("tower", position=(2.0, 1.0, 2.0)))
+    shaded = scene.power_profile(site, scene.projected_areas(["cells"], "moon/site", rows=39, efficiency=0.3), start, end, step=6 * 3600.0)
+    assert shaded.energy_wh < 0.93 * plain.energy_wh
+    axes = site.pose_in(scene.root).matrix[:3, :3]
+    differ = []
+    for i in range(0, len(shaded.time), 3):
+        if shaded.sun_elevation_deg[i] < 1.0:
+            assert shaded.power[i] == 0.0 or shaded.sun_elevation_deg[i] > -0.3
+            continue
+        a, e = np.radians((shaded.sun_azimuth_deg[i], shaded.sun_elevation_deg[i]))
+        towards = axes @ (np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e))
+        lit = scene.lit_area(cells, sun={"direction": towards, "radius_deg": 0.0}, efficiency=0.3)
+        unblocked = 2.0 * max(normal @ axes.T @ towards, 0.0)
+        differ.append(shaded.power[i] - plain.power[i] * (lit.projected_area / unblocked if unblocked > 1e-6 else 0.0))
+    assert len(differ) > 15 and np.abs(differ).max() < 0.12 * plain.power.max() and np.mean(np.abs(differ)) < 0.015 * plain.power.max()
+    for wrong, text in (({"rows": 1}, "rows is 1"), ({"azimuths": 0}, "azimuths is 0"), ({"lowest": 95.0}, "ascending")):
+        with pytest.raises(dspace.InvalidArgument, match=text):
+            scene.projected_areas(cells, site, **wrong)
+    with pytest.raises(dspace.InvalidArgument, match="the areas have the shape"):
+        scene.power_profile(site, dspace.ProjectedAreas(np.ones(3), 0.0, 10.0), start, end)
+    with pytest.raises(dspace.InvalidArgument, match="its elevations run from 10 to 0"):
+        scene.power_profile(site, dspace.ProjectedAreas(np.ones((2, 3)), 10.0, 0.0), start, end)

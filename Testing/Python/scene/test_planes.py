@@ -201,6 +201,23 @@ def test_ranges_are_saved(scene, tmp_path):
         viewport.save(tmp_path / "range.png", plane="range")
 
 
+def test_planes_of_light_are_saved_as_they_are_captured(scene, tmp_path):
+    gdal = needs_module("osgeo.gdal", "python3-gdal")  # an independent reader
+    scene.add_box((1, 1, 1), name="cube")
+    scene.add_camera("eye", eye=(9, 2, 3), target=(0, 0, 0))
+    scene.sun.set(direction=(1.0, 0.5, 0.7))
+    viewport = scene.add_viewport((64, 48))
+    for name in ("radiance", "lit_fraction", "incidence", "emission", "phase"):
+        taken = viewport.capture(color=False, **{name: True})[name]
+        for ending in ("tif", "exr"):
+            viewport.save(tmp_path / f"{name}.{ending}", plane=name)
+        found = gdal.Open(str(tmp_path / f"{name}.tif")).ReadAsArray()
+        np.testing.assert_array_equal(np.moveaxis(found, 0, -1) if found.ndim == 3 else found, taken)
+        assert np.isfinite(taken).any() and np.nanmax(taken) > 0.0
+        with pytest.raises(dspace.InvalidArgument, match=f"accepted for {name.replace('_', ' ')}: .tif .tiff .exr"):
+            viewport.save(tmp_path / "no.png", plane=name)
+
+
 # --- Near and far ----------------------------------------------------------------------------------
 
 def test_an_orthographic_camera_sees_a_scene_from_any_distance(scene):

@@ -42,6 +42,7 @@ _HOMES = {
     "Animation": "objects.models", "Model": "objects.models",
     "Joint": "objects.robots", "Robot": "objects.robots",
     "Battery": "measure.plans", "BodySite": "measure.plans", "Orbiter": "measure.plans", "Panel": "measure.plans",
+    "ProjectedAreas": "measure.plans",
     "Contact": "measure.results", "PowerProfile": "measure.results", "SkyTrack": "measure.results",
     "Horizon": "measure.results", "MeasuredArea": "measure.results", "MeasuredLine": "measure.results",
     "Profile": "measure.results", "LinesOfSight": "measure.results", "LitArea": "measure.results",

@@ -68,6 +68,9 @@ void Advance(const Battery& battery, BatteryStep& state, double before, double a
 } // namespace
 
 double PanelPower(const SolarPanel& panel, const Eigen::Vector3d& towardsSun, double irradiance) {
+  if (panel.projected) {
+    return irradiance * panel.efficiency * panel.projected->At(ToAzimuthElevation(towardsSun));
+  }
   double cosine = 0.0;
   switch (panel.tracking) {
   case SolarPanel::Tracking::None:

@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include <dspace/sky/SkyView.h>
+#include <dspace/visibility/DirectionTable.h>
 #include <dspace/visibility/HorizonLine.h>
 
 namespace dspace {
@@ -22,6 +24,9 @@ struct SolarPanel {
   Tracking tracking = Tracking::None;
   double area = 1.0;       // [m^2]
   double efficiency = 1.0; // 0 to 1; the temperature of the cells does not count
+  // In place of normal, tracking and area: the area projected towards each direction that the Sun
+  // lights [m^2], with the shadows of what is at the place; null: none. It does not turn.
+  std::shared_ptr<const DirectionTable> projected;
 };
 
 // The power [W] of a panel at an irradiance [W/m^2] from a unit direction (east, north, up). 0 for

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include <dspace/AtomicFile.h>
 #include <dspace/Error.h>
@@ -79,23 +80,36 @@ std::array<float, 256> LinearFromSrgb() {
   return table;
 }
 
-void WriteMetres(const std::string& path, int width, int height, const std::vector<float>& metres,
-                 const char* channel) {
-  RequireSize(path, width, height, 1, metres.size());
-  PictureFile picture = {path, width, height, 1, Sample::Float, metres.data(), sizeof(float)};
-  picture.channelNames = {channel};
-  picture.zip = true;
-  LoadImageCodec().write(picture);
+// The channels of a plane of floats, and what it is called; none for others.
+std::pair<std::vector<std::string>, const char*> FloatsOf(ImagePlane plane) {
+  switch (plane) {
+  case ImagePlane::Depth:
+    return {{"Z"}, "depth"};
+  case ImagePlane::Range:
+    return {{"R"}, "range"};
+  case ImagePlane::Radiance:
+    return {{"R", "G", "B"}, "radiance"};
+  case ImagePlane::LitFraction:
+    return {{"lit"}, "lit fraction"};
+  case ImagePlane::Incidence:
+    return {{"incidence"}, "incidence"};
+  case ImagePlane::Emission:
+    return {{"emission"}, "emission"};
+  case ImagePlane::Phase:
+    return {{"phase"}, "phase"};
+  default:
+    return {};
+  }
 }
 
 } // namespace
 
 void CheckImageFile(const std::string& path, ImagePlane plane, const ImageFileOptions& options) {
   const Type type = TypeOf(path);
-  if ((plane == ImagePlane::Depth || plane == ImagePlane::Range) && type != Type::Tiff &&
-      type != Type::Exr) {
-    Reject(path, std::string("its type holds no 32-bit floats; accepted for ") +
-                     (plane == ImagePlane::Depth ? "depth" : "range") + ": .tif .tiff .exr");
+  if (const char* floats = FloatsOf(plane).second;
+      floats && type != Type::Tiff && type != Type::Exr) {
+    Reject(path, std::string("its type holds no 32-bit floats; accepted for ") + floats +
+                     ": .tif .tiff .exr");
   }
   if (plane == ImagePlane::Label && type == Type::Jpeg) {
     Reject(path, "its type loses values; accepted for labels: .png .tif .tiff .exr");
@@ -134,14 +148,22 @@ void WriteColor(const std::string& path, int width, int height,
   LoadImageCodec().write(picture);
 }
 
-void WriteDepth(const std::string& path, int width, int height, const std::vector<float>& depth) {
-  CheckImageFile(path, ImagePlane::Depth);
-  WriteMetres(path, width, height, depth, "Z");
-}
-
-void WriteRange(const std::string& path, int width, int height, const std::vector<float>& range) {
-  CheckImageFile(path, ImagePlane::Range);
-  WriteMetres(path, width, height, range, "R");
+void WriteFloats(const std::string& path, ImagePlane plane, int width, int height,
+                 const std::vector<float>& values) {
+  CheckImageFile(path, plane);
+  const std::vector<std::string> channels = FloatsOf(plane).first;
+  const int count = int(channels.size());
+  RequireSize(path, width, height, count, values.size());
+  PictureFile picture = {path,
+                         width,
+                         height,
+                         count,
+                         Sample::Float,
+                         values.data(),
+                         std::ptrdiff_t(sizeof(float)) * count};
+  picture.channelNames = channels;
+  picture.zip = true;
+  LoadImageCodec().write(picture);
 }
 
 void WriteLabel(const std::string& path, int width, int height,

@@ -166,6 +166,9 @@ std::string CommandTraits::PartName(const v1::Command& command) const {
     return {};
   }
   const auto* name = descriptor->FindFieldByName("name");
+  if (!name) {
+    return part;
+  }
   return part + " '" + message.GetReflection()->GetString(message, name) + "'";
 }
 

@@ -15,6 +15,10 @@ def add_arguments(parser):
     parser.add_argument("--panel", action="append", default=[], metavar="AREA[,AZ,EL]",
                         help="area [m^2], and where the normal points: azimuth, clockwise from north, and elevation [deg] "
                         "(default: up); may be given several times (default: one of 1 m^2)")
+    parser.add_argument("--object", action="append", default=[], metavar="NAME",
+                        help="of --recording, in place of --panel: an object whose lit faces are cells, with the shadows that the objects of "
+                        "the scene throw on it; may be given several times")
+    parser.add_argument("--part", action="append", default=[], metavar="NAME", help="of --object: a part that counts (default: all)")
     parser.add_argument("--tracking", choices=("fixed", "vertical", "full"), default="fixed",
                         help="vertical: all panels turn about the vertical, their normals level; full: they face the Sun")
     parser.add_argument("--efficiency", type=float, default=1.0, metavar="E", help="of the cells, 0 to 1 (default: 1)")
@@ -31,13 +35,19 @@ def run(options):
     out = out_of(options)
     if options.battery is None and options.load:
         raise Failed("--load: accepted: with --battery")
+    if options.object and (options.recording is None or options.panel or options.tracking != "fixed"):
+        raise Failed("--object: accepted: with --recording, without --panel and --tracking")
+    if options.part and not options.object:
+        raise Failed("--part: accepted: with --object")
     panels = []
-    for text in options.panel or ["1"]:
+    for text in () if options.object else options.panel or ["1"]:
         area, azimuth, elevation = (*place_of(text, "AREA[,AZ,EL]", (1, 3), "--panel"), 0.0, 90.0)[:3]
         panels.append(dspace.Panel(area, options.efficiency, azimuth, elevation, options.tracking))
     battery = options.battery and dspace.Battery(options.battery, options.load, options.charge, options.charging)
     with opened(options) as scene:
         span = Span(scene, options, STEP)
+        if options.object:
+            panels = [scene.projected_areas(options.object, span.place, parts=options.part, efficiency=options.efficiency)]
         profile = scene.power_profile(span.place, panels, span.start, span.end, step=span.step, mask=span.mask, battery=battery,
                                       body=span.body)
         utc = scene.utc(profile.time)

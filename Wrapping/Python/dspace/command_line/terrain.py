@@ -110,8 +110,8 @@ def numbers(count, names):
 
 def sun(text):
     azimuth, elevation = numbers(2, "AZ,EL")(text)
-    if not -90 <= elevation <= 90:
-        raise argparse.ArgumentTypeError(f"'{text}'; accepted: an elevation of -90 to 90 degrees")
+    if not (abs(azimuth) <= 360 and abs(elevation) <= 90):
+        raise argparse.ArgumentTypeError(f"'{text}'; accepted: an azimuth of -360 to 360 and an elevation of -90 to 90 degrees")
     return azimuth, elevation
 
 

@@ -1,10 +1,12 @@
 """Sunlit areas and the power of solar cells in a scene."""
 import numpy as np
 
-from dspace._core.fields import flag, items, put_given, reject
+from dspace._core.fields import flag, integer, items, put_given, real, reject
 from dspace.errors import WrongType
 from dspace.measure.obstacles import object_ids, put_measuring
+from dspace.measure.plans import ProjectedAreas
 from dspace.measure.results import LitArea
+from dspace.measure.scene_places import ScenePlace
 
 MOST_OBJECTS = 10_000
 
@@ -72,3 +74,36 @@ class Lit:
                        reply.irradiance, np.array([reply.sun.x, reply.sun.y, reply.sun.z]),
                        of("image_projected_area") if method != "exact" else None,
                        of("image_pixel_area") if method != "exact" else None, of("sun_left"))
+
+    def projected_areas(self, objects, place, *, azimuths=72, lowest=-5.0, highest=90.0, rows=20, parts=(), efficiency=1.0,
+                        both_sides=False, samples=512, hide=(), without=(), progress=None):
+        """Measures the lit area of objects, projected towards the Sun, for suns all around a place. Returns ProjectedAreas, which
+        power_profile() takes as a panel: so a profile over years has the shadows of the vehicle and the habitat.
+
+        objects, parts, both_sides, samples (of each object), hide, without: as for lit_area(). place: a Site, or a Frame or its path,
+        as power_profile() gets it: its north and vertical count. azimuths (1 to 3600) times rows (2 to 1000) directions, at elevations
+        from lowest to highest [deg]. The Sun is a point; terrain throws no shadow here: the profile's mask does. What turns with the
+        time keeps its present pose. efficiency: of the cells, 0 to 1.
+
+        progress(fraction): called after each row; what it raises ends the work."""
+        about = "projected areas"
+        single = isinstance(objects, str) or not isinstance(objects, (list, tuple, set, frozenset, np.ndarray))
+        objects = [objects] if single else list(objects)
+        if not 1 <= integer(azimuths, "azimuths", about) <= 3600:
+            reject(about, "azimuths", azimuths, "1 to 3600")
+        if not 2 <= integer(rows, "rows", about) <= 1000:
+            reject(about, "rows", rows, "2 to 1000")
+        if not -90.0 <= real(lowest, "lowest", about) < real(highest, "highest", about) <= 90.0:
+            reject(about, "the elevations", (lowest, highest), "ascending, -90 to 90")
+        where = ScenePlace(self._scene, place, "the place", about)
+        axes = where.axes(where.position(), meridian=True)
+        area = np.empty((rows, azimuths))
+        for row, elevation in enumerate(np.radians(np.linspace(lowest, highest, rows))):
+            for column, azimuth in enumerate(np.radians(np.arange(azimuths) * (360.0 / azimuths))):
+                towards = np.array((np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation))) @ axes
+                lit = self.lit_area(objects, parts=parts, sun={"direction": towards, "radius_deg": 0.0}, both_sides=both_sides,
+                                    samples=samples, terrain=False, hide=hide, without=without)
+                area[row, column] = lit.projected_area.sum()
+            if progress is not None:
+                progress((row + 1) / rows)
+        return ProjectedAreas(area, float(lowest), float(highest), efficiency)

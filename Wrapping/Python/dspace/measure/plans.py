@@ -45,6 +45,20 @@ class Panel:
 
 
 @dataclass(frozen=True)
+class ProjectedAreas:
+    """The area of solar cells that the Sun lights, projected towards each direction, with the shadows of what stands beside them: a
+    panel of Scene.power_profile() that knows its own vehicle. Scene.projected_areas() measures it.
+
+    area (rows, azimuths) [m^2]: rows at evenly spaced elevations from lowest_deg to highest_deg, columns at evenly spaced azimuths
+    clockwise from the meridian's north; linear in between, and beyond the rows that of the nearest one. efficiency of the cells, 0 to
+    1."""
+    area: np.ndarray
+    lowest_deg: float
+    highest_deg: float
+    efficiency: float = 1.0
+
+
+@dataclass(frozen=True)
 class Battery:
     """A battery that panels charge. capacity_wh [W h]; load [W] that panels and battery supply; charge at the start, 0 to 1
     of the capacity; charging: the part of the energy that arrives when it charges, 0 to 1."""

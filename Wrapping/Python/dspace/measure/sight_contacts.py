@@ -4,8 +4,8 @@ import numpy as np
 from dspace._core.fields import items, number, reject
 from dspace.errors import InvalidArgument
 from dspace.frames.frame import Frame
-from dspace.frames.poses import Pose
 from dspace.measure.results import Contact, Horizon, Moment
+from dspace.measure.scene_places import ScenePlace
 from dspace.terrain.site import Site
 
 MOST_STEPS = 100_000
@@ -70,7 +70,7 @@ class _Line:
 
     def __init__(self, scene, start, end, move, mask, obstacles, about):
         self._scene, self._end, self._move, self._obstacles = scene, end, move, obstacles
-        self._ends = [_Place(scene, place, what, about) for place, what in ((start, "the start"), (end, "the end"))]
+        self._ends = [ScenePlace(scene, place, what, about) for place, what in ((start, "the start"), (end, "the end"))]
         if mask is not None and not isinstance(mask, Horizon) and not -90.0 <= number(mask, "the mask", about) <= 90.0:
             reject(about, "the mask", mask, "-90 to 90 degrees, or a Horizon")
         self._mask = mask
@@ -131,56 +131,6 @@ class _Line:
                 high, right = right.time, left
                 left = self._at(high - GOLDEN * (high - low))[0]
         return max((left, right), key=lambda moment: moment.elevation_deg)
-
-
-class _Place:
-    """A place whose position depends on the scene's time."""
-
-    def __init__(self, scene, place, what, about):
-        self._scene = scene
-        if isinstance(place, Frame):
-            place = place.path  # a playback that goes back makes its frames anew
-        if not isinstance(place, (str, Site)):
-            reject(about, what, place, "a Site, a Frame or its path")
-        if isinstance(place, Site):
-            scene._require_own(place.terrain, f"terrain {place.terrain.name!r}", about)
-            if place.shape != ():
-                raise InvalidArgument(f"{about}: {what} has the shape {place.shape}; accepted: one place", about)
-            x, y = float(place.x), float(place.y)
-            self._map = [x, y, place.terrain.height(x, y, map=True) + float(place.height)]
-        self.place = place
-
-    def position(self):
-        """In the root [m]."""
-        if isinstance(self.place, Site):
-            terrain = self.place.terrain
-            return terrain.frame.world_pose.apply(np.asarray(terrain.from_map(self._map), float))
-        return self._pose().position
-
-    def _pose(self):
-        return Pose.from_row(self._scene.poses([self.place], relative_to=self._scene.root)[0])
-
-    def axes(self, position):
-        """East, north and up in the root, as rows."""
-        for terrain in [self.place.terrain] if isinstance(self.place, Site) else self._scene.terrains.values():
-            pose = terrain.frame.world_pose
-            inner = pose.inverse().apply(position)
-            if isinstance(self.place, Site) or np.isfinite(terrain.height(*terrain.to_map(inner)[:2], map=True)):
-                return _local_axes(terrain, inner) @ pose.matrix[:3, :3].T / pose.scale
-        return self._pose().matrix[:3, :3].T / self._pose().scale
-
-
-def _local_axes(terrain, point):
-    """East, north and up at a point of the terrain's frame, as rows: by the slopes of height and latitude, or of the map's y."""
-    size = 1.0  # [m]
-    around = np.asarray(point) + size * np.concatenate((np.eye(3), -np.eye(3)))
-    map_ = np.asarray(terrain.to_map(around))
-    along = terrain.locate(around).latitude if terrain.on_body else map_[:, 1]
-    up, north = ((values[:3] - values[3:]) / (2.0 * size) for values in (map_[:, 2], np.asarray(along)))
-    up /= np.linalg.norm(up)
-    north = north - up * (up @ north)
-    north /= np.linalg.norm(north)
-    return np.stack((np.cross(north, up), north, up))
 
 
 def _runs(flags):

@@ -5,7 +5,7 @@ from dspace._core import wire
 from dspace._core.fields import array_of, flag, items, put, put_given, put_vector, real, reject, text, word
 from dspace.errors import InvalidArgument, WrongType
 from dspace.frames.frame import Frame
-from dspace.measure.plans import Battery, BodySite, Orbiter, Panel
+from dspace.measure.plans import Battery, BodySite, Orbiter, Panel, ProjectedAreas
 from dspace.measure.results import Contact, Horizon, Moment, PowerProfile, SkyTrack
 from dspace.sky.places import put_place
 from dspace.terrain.site import Site
@@ -85,24 +85,28 @@ class Visibility:
     def power_profile(self, place, panels, start, end, *, step=3600.0, mask=0.0, battery=None, body=None, deadline=None):
         """Computes the power of solar panels at a place over a span of time. Returns a PowerProfile.
 
-        place, body, mask, deadline: as for contacts(). panels: a Panel or a list of them (at most 10,000). battery: a Battery;
+        place, body, mask, deadline: as for contacts(). panels: a Panel, a ProjectedAreas, or a list of them (at most 10,000). battery: a Battery;
         default: none. start, end, step: the power is linear between the samples, of which there are at most 2,000,000.
 
         The irradiance is 1361 W/m^2 at 1 au, times the part of the Sun's disc above the horizon. The disc is of even radiance.
-        The temperature of cells, shadows of the lander itself, light from the ground and atmospheres do not count. Over the Moon
+        The temperature of cells, light from the ground and atmospheres do not count; shadows of the vehicle itself do with
+        ProjectedAreas only. Over the Moon
         the Earth eclipses the Sun, and over the Earth the Moon, as discs of their largest radii: beside the Earth's limb the light
         is then off by up to 1 % of the disc. Nights are found as contacts() finds them, by the horizon alone, to 1 ms."""
         about = "power profile"
         command = self._scene._command()
         message = command.profile_power
         self._put_place(message.place, place, body, about)
-        panels = [panels] if isinstance(panels, Panel) else items(panels, "the panels", about, "dspace.Panel")
+        panels = [panels] if isinstance(panels, (Panel, ProjectedAreas)) else items(panels, "the panels", about, "dspace.Panel")
         if not panels:
             raise InvalidArgument(f"{about}: there is no panel; accepted: a dspace.Panel or a list of them", about)
         for panel in panels:
-            if not isinstance(panel, Panel):
-                reject(about, "the panel", panel, "a dspace.Panel", WrongType)
+            if not isinstance(panel, (Panel, ProjectedAreas)):
+                reject(about, "the panel", panel, "a dspace.Panel or dspace.ProjectedAreas", WrongType)
             out = message.panel.add()
+            if isinstance(panel, ProjectedAreas):
+                _put_areas(out, panel, about)
+                continue
             put(out, about, area=panel.area, efficiency=panel.efficiency)
             if not -90.0 <= real(panel.elevation_deg, "the panel's elevation_deg", about) <= 90.0:
                 reject(about, "the panel's elevation_deg", panel.elevation_deg, "-90 to 90")
@@ -184,3 +188,13 @@ class Visibility:
         if array.ndim > 1:
             raise InvalidArgument(f"{about}: the mask has the shape {array.shape}; accepted: a number, or one dimension", about)
         wire.put_array(message, "elevation_deg", array.reshape(-1))
+
+
+def _put_areas(message, panel, about):
+    array = array_of(panel.area, "the areas", "an array (rows, azimuths) [m^2]", about)
+    if array.ndim != 2 or not array.size:
+        raise InvalidArgument(f"{about}: the areas have the shape {array.shape}; accepted: (rows, azimuths), at least one", about)
+    put(message, about, efficiency=panel.efficiency)
+    message.projected.azimuths = array.shape[1]
+    put(message.projected, about, lowest_deg=panel.lowest_deg, highest_deg=panel.highest_deg)
+    wire.put_array(message.projected, "area", array.reshape(-1))

@@ -340,6 +340,7 @@ class Scene(Strict):
     measure_area = delegate(Lines, "measure_area")
     measure_angle = delegate(Lines, "measure_angle")
     lit_area = delegate(Lit, "lit_area")
+    projected_areas = delegate(Lit, "projected_areas")
     scan = delegate(Scans, "scan")
     add_lens_frustum = delegate(LensOrnaments, "add_lens_frustum")
     add_lens_footprint = delegate(LensOrnaments, "add_lens_footprint")

@@ -19,7 +19,7 @@ from dspace.scene.navigation import ViewportNavigation
 from dspace.terrain.coordinates import coordinates_of
 
 ANCHORS = {"top left": 0, "top right": 1, "bottom left": 2, "bottom right": 3}
-PLANES = {"color": 0, "depth": 1, "range": 3, "label": 2}
+PLANES = {"color": 0, "depth": 1, "range": 3, "label": 2, "radiance": 4, "lit_fraction": 5, "incidence": 6, "emission": 7, "phase": 8}
 SIZE = f"(width, height), two integers from {SIDE[0]} to {SIDE[1]}"
 EVENTS = {"move": 0, "press": 1, "release": 2, "wheel": 3, "key": 4, "double click": 5}
 BUTTONS = {None: 0, "left": 1, "middle": 2, "right": 3}
@@ -143,8 +143,9 @@ class Viewport(ViewportLook, ViewportNavigation, ViewportLens):
         return self.capture(False, label=True, physical_only=physical_only, hide=hide)["label"]
 
     def save(self, path, plane="color", physical_only=False, hide=(), quality=None):
-        """Writes the picture to .png, .jpg, .tif or .exr; plane "depth" or "range" [m] to .tif or .exr, "label"
-        to .png, .tif or .exr. quality: 1 to 100, JPEG."""
+        """Writes the picture to .png, .jpg, .tif or .exr; plane "label" to .png, .tif or .exr; and to .tif or .exr, as 32-bit
+        floats: "depth" and "range" [m], "radiance" [W/m^2/sr], "lit_fraction", "incidence", "emission" and "phase" [deg]
+        (Viewport.capture). quality: 1 to 100, JPEG."""
         command = pb.Command()
         message = command.save_image
         message.plane = word(plane, PLANES, "plane", self._label)

@@ -1,4 +1,5 @@
 // Contacts and power over a span of time.
+#include <memory>
 #include <optional>
 
 #include <dspace/Checks.h>
@@ -160,6 +161,19 @@ void SearchContacts(const Context& context, v1::FindContacts& command) {
 
 SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& label) {
   SolarPanel panel;
+  panel.efficiency = asked.has_efficiency() ? asked.efficiency() : 1.0;
+  if (asked.has_projected()) {
+    if (asked.has_normal() || asked.area() != 0.0 ||
+        asked.tracking() != v1::ProfilePower::Panel::FIXED) {
+      Reject(label, "it has projected areas, and a normal, an area or a tracking; accepted: one or "
+                    "the other");
+    }
+    const v1::ProfilePower::ProjectedAreas& areas = asked.projected();
+    panel.projected = std::make_shared<DirectionTable>(
+        std::vector<double>(areas.area().begin(), areas.area().end()), areas.azimuths(),
+        areas.lowest_deg(), areas.highest_deg());
+    return panel;
+  }
   switch (asked.tracking()) {
   case v1::ProfilePower::Panel::FIXED:
     break;
@@ -177,7 +191,6 @@ SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& labe
     panel.normal = ToVector(asked.normal());
   }
   panel.area = asked.area();
-  panel.efficiency = asked.has_efficiency() ? asked.efficiency() : 1.0;
   return panel;
 }
 

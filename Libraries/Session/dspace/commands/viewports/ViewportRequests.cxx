@@ -1,6 +1,7 @@
 // Pictures and picks.
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 
 #include <dspace/Checks.h>
@@ -100,6 +101,30 @@ void RemarkOnCamera(const Scene& scene, const SceneState& state, const CameraPos
   }
 }
 
+// A plane that SaveImage writes: how it is asked for, and where its floats are.
+struct SavedPlane {
+  ImagePlane plane;
+  bool CaptureRequest::*asked;
+  std::vector<float> dspace::Capture::*values; // null: no floats
+};
+
+const std::map<int, SavedPlane>& SavedPlanes() {
+  using S = v1::SaveImage;
+  using Request = CaptureRequest;
+  using Taken = dspace::Capture;
+  static const std::map<int, SavedPlane> planes = {
+      {S::COLOR, {ImagePlane::Color, &Request::color, nullptr}},
+      {S::DEPTH, {ImagePlane::Depth, &Request::depth, &Taken::depth}},
+      {S::RANGE, {ImagePlane::Range, &Request::range, &Taken::range}},
+      {S::LABEL, {ImagePlane::Label, &Request::label, nullptr}},
+      {S::RADIANCE, {ImagePlane::Radiance, &Request::radiance, &Taken::radiance}},
+      {S::LIT_FRACTION, {ImagePlane::LitFraction, &Request::litFraction, &Taken::litFraction}},
+      {S::INCIDENCE, {ImagePlane::Incidence, &Request::incidence, &Taken::incidence}},
+      {S::EMISSION, {ImagePlane::Emission, &Request::emission, &Taken::emission}},
+      {S::PHASE, {ImagePlane::Phase, &Request::phase, &Taken::phase}}};
+  return planes;
+}
+
 } // namespace
 
 void ViewportCommands::Explain(const Context& context, v1::ExplainViewport& command) {
@@ -189,36 +214,23 @@ void ViewportCommands::SaveImage(const Context&, v1::SaveImage& command) {
   if (command.has_quality()) {
     options.jpegQuality = ToInt(command.quality());
   }
-  switch (command.plane()) {
-  case v1::SaveImage::COLOR:
-    CheckImageFile(path, ImagePlane::Color, options);
-    request.color = true;
-    break;
-  case v1::SaveImage::DEPTH:
-    CheckImageFile(path, ImagePlane::Depth, options);
-    request.depth = true;
-    break;
-  case v1::SaveImage::RANGE:
-    CheckImageFile(path, ImagePlane::Range, options);
-    request.range = true;
-    break;
-  case v1::SaveImage::LABEL:
-    CheckImageFile(path, ImagePlane::Label, options);
-    request.label = true;
-    break;
-  default:
-    Reject("file '" + path + "'", "the plane is " + std::to_string(int(command.plane())) +
-                                      "; accepted: COLOR (0), DEPTH (1), LABEL (2), RANGE (3)");
+  const auto found = SavedPlanes().find(command.plane());
+  if (found == SavedPlanes().end()) {
+    Reject("file '" + path + "'",
+           "the plane is " + std::to_string(int(command.plane())) +
+               "; accepted: COLOR (0), DEPTH (1), LABEL (2), RANGE (3), RADIANCE (4), "
+               "LIT_FRACTION (5), INCIDENCE (6), EMISSION (7), PHASE (8)");
   }
+  const SavedPlane& plane = found->second;
+  CheckImageFile(path, plane.plane, options);
+  request.*plane.asked = true;
   const dspace::Capture taken = viewport.GetCapture(request);
-  if (request.color) {
-    WriteColor(path, taken.width, taken.height, taken.color, options);
-  } else if (request.depth) {
-    WriteDepth(path, taken.width, taken.height, taken.depth);
-  } else if (request.range) {
-    WriteRange(path, taken.width, taken.height, taken.range);
-  } else {
+  if (plane.values) {
+    WriteFloats(path, plane.plane, taken.width, taken.height, taken.*plane.values);
+  } else if (plane.plane == ImagePlane::Label) {
     WriteLabel(path, taken.width, taken.height, taken.label);
+  } else {
+    WriteColor(path, taken.width, taken.height, taken.color, options);
   }
 }
 

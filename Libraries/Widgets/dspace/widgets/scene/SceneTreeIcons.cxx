@@ -143,7 +143,7 @@ QIcon SceneIcon(SceneTreeModel::Icon icon, const QPalette& palette) {
   static auto& icons = *new std::map<IconKey, QIcon>; // never destroyed: the application ends first
   const QColor plain = Mixed(palette.color(QPalette::Active, QPalette::Text),
                              palette.color(QPalette::Active, QPalette::Base), 0.2);
-  const QColor selected = palette.color(QPalette::Active, QPalette::HighlightedText);
+  const QColor selected = palette.color(QPalette::HighlightedText);
   QIcon& made = icons[{int(icon), plain.rgba(), selected.rgba()}];
   if (made.isNull()) {
     made = MakeIcon(plain, selected, [icon](QPainter& painter, const QColor& color) {
@@ -159,7 +159,7 @@ QIcon EyeIcon(SceneTreeModel::Eye eye, const QPalette& palette) {
   }
   static auto& icons = *new std::map<IconKey, QIcon>; // never destroyed: the application ends first
   const QColor plain = palette.color(QPalette::Active, QPalette::Text);
-  const QColor selected = palette.color(QPalette::Active, QPalette::HighlightedText);
+  const QColor selected = palette.color(QPalette::HighlightedText);
   QIcon& made = icons[{int(eye), plain.rgba(), selected.rgba()}];
   if (made.isNull()) {
     made = MakeIcon(plain, selected, [eye](QPainter& painter, const QColor& color) {

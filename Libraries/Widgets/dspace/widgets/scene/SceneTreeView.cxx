@@ -1,6 +1,7 @@
 #include <dspace/widgets/scene/SceneTreeView.h>
 
 #include <algorithm>
+#include <utility>
 
 #include <QAccessible>
 #include <QApplication>
@@ -74,13 +75,44 @@ SceneTreeView::SceneTreeView(SceneTreeModel* model, QWidget* parent) : QTreeView
   this->setIndentation(IconEdge);
   QHeaderView& header = *this->header();
   header.setStretchLastSection(false);
+  header.setResizeContentsPrecision(0); // of the rows in view only
   header.setMinimumSectionSize(IconEdge);
-  header.setSectionResizeMode(SceneTreeModel::NameColumn, QHeaderView::Stretch);
+  header.setSectionResizeMode(SceneTreeModel::NameColumn, QHeaderView::Fixed); // FitNames
   header.setSectionResizeMode(SceneTreeModel::VisibleColumn, QHeaderView::Fixed);
   header.resizeSection(SceneTreeModel::VisibleColumn, IconEdge + 12);
   const QFontMetrics metrics(this->font());
   header.resizeSection(SceneTreeModel::NatureColumn, metrics.horizontalAdvance("ornamental") + 12);
   header.resizeSection(SceneTreeModel::KindColumn, metrics.horizontalAdvance("primitive") + 12);
+  connect(this, &QTreeView::expanded, this, &SceneTreeView::FitNames);
+  connect(this, &QTreeView::collapsed, this, &SceneTreeView::FitNames);
+  connect(&header, &QHeaderView::sectionResized, this, [this](int section) {
+    if (section != SceneTreeModel::NameColumn) {
+      this->FitNames();
+    }
+  });
+}
+
+void SceneTreeView::FitNames() {
+  if (this->Fitting_) {
+    return; // a scroll bar that comes and goes resizes the view
+  }
+  this->Fitting_ = true;
+  int left = this->viewport()->width();
+  for (int column = 0; column < this->header()->count(); ++column) {
+    left -= column == SceneTreeModel::NameColumn ? 0 : this->columnWidth(column);
+  }
+  constexpr int Widest = 1200;
+  const int needed = std::min(this->sizeHintForColumn(SceneTreeModel::NameColumn), Widest);
+  const int width = std::max(left, needed);
+  if (width != this->columnWidth(SceneTreeModel::NameColumn)) {
+    this->setColumnWidth(SceneTreeModel::NameColumn, width);
+  }
+  this->Fitting_ = false;
+}
+
+void SceneTreeView::resizeEvent(QResizeEvent* event) {
+  QTreeView::resizeEvent(event);
+  this->FitNames();
 }
 
 void SceneTreeView::dataChanged(const QModelIndex& topLeft, const QModelIndex& bottomRight,
@@ -105,7 +137,7 @@ void SceneTreeView::dataChanged(const QModelIndex& topLeft, const QModelIndex& b
 void SceneTreeView::paintEvent(QPaintEvent* event) {
   QTreeView::paintEvent(event);
   ++this->Paintings_;
-  this->InView_.clear();
+  const auto before = std::exchange(this->InView_, {});
   const int bottom = this->viewport()->height();
   for (QModelIndex index = this->indexAt({0, 0}); index.isValid();
        index = this->indexBelow(index)) {
@@ -115,6 +147,9 @@ void SceneTreeView::paintEvent(QPaintEvent* event) {
     this->InView_.emplace_back(index.parent().internalPointer(), index.row());
   }
   std::sort(this->InView_.begin(), this->InView_.end());
+  if (this->InView_ != before) { // other names
+    QMetaObject::invokeMethod(this, &SceneTreeView::FitNames, Qt::QueuedConnection);
+  }
   this->Painted_ = true;
 }
 

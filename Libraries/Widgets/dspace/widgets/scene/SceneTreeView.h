@@ -29,18 +29,23 @@ signals:
 
 protected:
   void paintEvent(QPaintEvent* event) override;
+  void resizeEvent(QResizeEvent* event) override;
   void mousePressEvent(QMouseEvent* event) override;
   void mouseDoubleClickEvent(QMouseEvent* event) override;
   void mouseReleaseEvent(QMouseEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
 
 private:
+  // Gives names their room: what the other columns leave, or what those in view need, and then the
+  // tree scrolls sideways.
+  void FitNames();
   bool OnEye(const QMouseEvent& event);
 
   // The rows in view when it was last painted: their parent's node and their number, sorted.
   std::vector<std::pair<const void*, int>> InView_;
   bool Painted_ = false; // and no painting is due
   bool EyePressed_ = false;
+  bool Fitting_ = false;
   int Paintings_ = 0;
 };
 
