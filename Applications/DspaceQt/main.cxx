@@ -101,11 +101,16 @@ int Start(QApplication&) {
   const QCommandLineOption connect("connect", "Shows the scene of a server.", "ADDRESS");
   const QCommandLineOption listen(
       "listen", "Serves: a simulation that connects drives this window (127.0.0.1:0).", "ADDRESS");
+  const QCommandLineOption root(
+      "root",
+      "Of --listen: a folder whose files the simulation may name (default: the working folder); "
+      "may be repeated.",
+      "DIR");
   const QCommandLineOption plugin(
       "load-plugin", "Loads a plug-in: a Python file or module; may be repeated.", "NAME");
   const QCommandLineOption layout("layout", "Arranges the docks as they were saved by that name.",
                                   "NAME");
-  parser.addOptions({screenshot, after, size, empty, connect, listen, plugin, layout});
+  parser.addOptions({screenshot, after, size, empty, connect, listen, root, plugin, layout});
   parser.process(Arguments());
   const QStringList sides = parser.value(size).split('x');
   bool good[3] = {false, false, false};
@@ -121,6 +126,10 @@ int Start(QApplication&) {
   if (!good[2] || !(wait >= 0.0 && wait <= 3600.0)) {
     std::cerr << "DspaceQt: --after " << parser.value(after).toStdString()
               << ": accepted are 0 to 3600 seconds\n";
+    return 2;
+  }
+  if (parser.isSet(root) && !parser.isSet(listen)) {
+    std::cerr << "DspaceQt: --root: accepted with --listen\n";
     return 2;
   }
   QIcon icon;
@@ -141,25 +150,25 @@ int Start(QApplication&) {
     window.Desktop()->Start(); // where it was the last time
   }
   window.show();
-  window.LoadPlugIns(parser.values(plugin));
+  bool done = window.LoadPlugIns(parser.values(plugin));
   for (const QString& path : parser.positionalArguments()) {
-    if (!window.Open(path) && parser.isSet(screenshot)) {
-      return 1;
-    }
+    done = window.Open(path) && done;
   }
   for (const QString& address : parser.values(connect)) {
-    window.Connect(address);
+    done = window.Connect(address) && done;
   }
   for (const QString& address : parser.values(listen)) {
-    window.Listen(address);
+    done = window.Listen(address, parser.values(root)) && done;
   }
   if (parser.positionalArguments().isEmpty() && !parser.isSet(empty) && !parser.isSet(connect) &&
       !parser.isSet(listen)) {
     window.Run(QStringLiteral("app.demo()"));
   }
-  if (parser.isSet(layout) && !window.RestoreLayout(parser.value(layout)) &&
-      parser.isSet(screenshot)) {
-    return 1;
+  if (parser.isSet(layout)) {
+    done = window.RestoreLayout(parser.value(layout)) && done;
+  }
+  if (!done && parser.isSet(screenshot)) {
+    return 1; // the messages are on the terminal
   }
   if (parser.isSet(screenshot)) {
     TakeScreenshot(window, parser.value(screenshot), wait);

@@ -83,6 +83,24 @@ def test_illumination(capsys, moon, tmp_path):
     assert aspect == pytest.approx(1.0 / np.cos(np.radians(0.5 * (edges[2] + edges[3])))) and 9.5 < aspect < 11.0
 
 
+def test_stations_and_permanent_shadow(capsys, moon, tmp_path):
+    span = ("--from", "2026-01-03", "--to", "2026-01-08", "--step", "7200")
+    area = ("--azimuths", 36, "--extent", "10.2,-84.3,10.6,-84.8")
+    code, out, err = run(capsys, "illumination", "--terrain", moon, *span, *area, "--quantity", "station_fraction", "--quantity",
+                         "permanent_shadow", "--station", "-116.89,35.43,970", "--station-mask", 10, "--out", tmp_path / "link.json")
+    assert code == 0, err
+    link, dark = json.loads((tmp_path / "link.json").read_text())["bands"]
+    assert 0.0 <= link["least"] <= link["greatest"] < 0.6 and link["greatest"] > 0.0  # one station of three
+    cells = 1e6 * 0.5 * np.pi / 180 * 1737.4 * 0.4 * np.pi / 180 * 1737.4 * np.cos(np.radians(84.55))
+    assert dark["area_m2"] == pytest.approx(dark["mean"] * cells, rel=0.2)
+    code, out, err = run(capsys, "illumination", "--terrain", moon, *span, *area, "--quantity", "permanent_shadow", "--out", tmp_path / "dark.tif")
+    assert code == 0 and "permanent shadow" in out and "km2" in out, err
+    for wrong in (("--station", "0,0"), ("--quantity", "station_fraction"), ("--station", "x", "--quantity", "station_fraction")):
+        code, _, err = run(capsys, "illumination", "--terrain", moon, *span, *wrong, "--out", tmp_path / "no.tif")
+        assert code != 0 and "--station" in err, wrong
+
+
+
 @pytest.mark.parametrize("arguments, text", [
     (("horizon", "--map"), "--out: accepted: a name with .tif"),
     (("horizon", "--map", "--out", "a.png"), "accepted: a name with .tif"),

@@ -73,10 +73,33 @@ def test_a_horizon_and_its_files(capsys, wall, tmp_path):
     elevation = np.degrees(np.arctan2(18.0, 50.0))
     assert f"to {elevation:.5f} deg (azimuth 90, " in out
     saved = json.loads((tmp_path / "horizon.json").read_text())["horizon"]
-    assert saved[2]["elevation_deg"] == pytest.approx(elevation, abs=2e-6) and saved[2]["lon_deg"] == pytest.approx(100.5)
+    assert saved[2]["elevation_deg"] == pytest.approx(elevation, abs=2e-6) and saved[2]["map_x"] == pytest.approx(100.5)
     code, out, err = run(capsys, *arguments, "--out", tmp_path / "horizon.csv")
     rows = list(csv.DictReader(open(tmp_path / "horizon.csv")))
     assert code == 0 and len(rows) == 8 and float(rows[2]["azimuth_deg"]) == 90.0
+
+
+def test_paths_over_a_horizon_and_the_pictures_cameras(capsys, moon, wall, tmp_path):
+    """The Sun over a smooth Moon: rows of the path are those of Scene.sky, and above_deg is over the dip of the horizon."""
+    code, out, err = run(capsys, "horizon", "--terrain", moon, "--site", "-10,0", "--height", "10", "--azimuths", "8", "--json",
+                         "--time", "2026-01-01,2026-01-05,43200", "--target", "sun", "--body", "moon")
+    assert code == 0, err
+    paths = json.loads(out)["paths"]
+    assert len(paths) == 9 and {row["target"] for row in paths} == {"sun"} and paths[0]["utc"].startswith("2026-01-01T00:00:00")
+    dip = np.degrees(np.arccos(R / (R + 10)))
+    with dspace.Session() as session:
+        sun = session.scene().sky("sun", body="moon", site=(-10.0, 0.0, 10.0), time="2026-01-03")["sun"]
+    assert paths[4]["elevation_deg"] == pytest.approx(sun.elevation_deg, abs=1e-4)
+    assert paths[4]["above_deg"] == pytest.approx(sun.elevation_deg + dip, abs=1e-3)
+    code, out, err = run(capsys, "horizon", "--terrain", wall, "--site", "50.5,20.5", "--azimuths", "4", "--method", "both", "--json")
+    found = json.loads(out)
+    assert code == 0 and found["method"] == "both" and len(found["cameras"]) == 4, err
+    assert abs(found["horizon"][1]["image_difference_deg"]) <= found["image_pixel_deg"]
+    for wrong, text in ((("--target", "sun"), "accepted: with --time"), (("--time", "2026-01-01"), "accepted: T0,T1"),
+                        (("--time", "2026-01-02,2026-01-01"), "accepted: an end after the start"),
+                        (("--time", "2026-01-01,2026-01-02"), "no longitudes and latitudes")):
+        code, _, err = run(capsys, "horizon", "--terrain", wall, "--site", "50.5,20.5", *wrong)
+        assert code != 0 and text in err, (wrong, err)
 
 
 LIT = ("lit", "--site", "50.5,20.5")

@@ -49,7 +49,7 @@ def test_lines_between_frames_and_sites(capsys, recording, tmp_path):
     assert found["lines"][0]["clearance_m"] == pytest.approx(2.0, abs=1e-4)
     assert found["lines"][0]["range_m"] == pytest.approx(np.hypot(100.0, 60.0))
     rows = list(csv.DictReader(open(tmp_path / "lines.csv")))
-    assert [row["to_frame"] for row in rows] == ["base/far", ""] and [row["to_lon_deg"] for row in rows] == ["", "150.5"]
+    assert [row["to_frame"] for row in rows] == ["base/far", ""] and [row["to_map_x"] for row in rows] == ["", "150.5"]
     # What is in the way is the plate, unless it is left out.
     plate = ("los", "--recording", recording, "--from", "95.5,20.5,1", "--to", "95.5,20.5,9", "--json")
     line = json.loads(run(capsys, *plate)[1])["lines"][0]
@@ -89,7 +89,7 @@ def test_horizons_of_frames(capsys, recording, tmp_path):
         east = found["horizon"][1]
         if height < 20.0:
             assert east["elevation_deg"] == pytest.approx(np.degrees(np.arctan2(20.0 - height, 50.0)), abs=1e-5)
-            assert east["lon_deg"] == pytest.approx(100.5, abs=1e-6) and found["frame"] == "base/mast"
+            assert east["map_x"] == pytest.approx(100.5, abs=1e-6) and found["frame"] == "base/mast"
         else:  # the last post is the edge of the plane
             assert east["elevation_deg"] == pytest.approx(-np.degrees(np.arctan2(height, 150.0)), abs=1e-5)
     site = run(capsys, "horizon", "--recording", recording, "--at", 0, "--site", "50.5,20.5", "--height", 2, "--azimuths", 4, "--json")[1]

@@ -65,12 +65,12 @@ def run(options):
         ground = MeasuredGround(scene, options)
         place = options.frame if site is None else ground.site((*site, options.height))
         horizon = scene.horizon(place, options.azimuths, method=options.method)
-        where = ground.degrees_of(horizon.point)
+        where, names = ground.degrees_of(horizon.point), ground.place_names()
         found = source_of(options, ground)
         paths = paths_of(scene, place, options) if options.time is not None else []
     turn = np.nan if horizon.first_deg is None else horizon.first_deg
     rows = [{"azimuth_deg": azimuth, "true_azimuth_deg": (azimuth + turn) % 360.0, "elevation_deg": elevation,
-             "distance_m": distance, "lon_deg": point[0], "lat_deg": point[1], "height_m": point[2]}
+             "distance_m": distance, names[0]: point[0], names[1]: point[1], "height_m": point[2]}
             for azimuth, elevation, distance, point in zip(horizon.azimuth_deg, horizon.elevation_deg, horizon.distance, where)]
     if options.method == "both":
         for row, image, difference in zip(rows, horizon.image_elevation_deg, horizon.image_difference_deg):
@@ -83,7 +83,7 @@ def run(options):
     if site is None:
         found.update(frame=options.frame, horizon=rows)
     else:
-        found.update(lon_deg=site[0], lat_deg=site[1], height_m=options.height, horizon=rows)
+        found.update({names[0]: site[0], names[1]: site[1], "height_m": options.height, "horizon": rows})
     if out is not None:
         write(out, found, rows, lambda figure: draw(figure, horizon, options.frame or f"{site[0]:g}, {site[1]:g}, {options.height:g} "
                                                     "m above the ground", paths, turn))
@@ -113,7 +113,9 @@ def paths_of(scene, place, options):
         step = 0.0
     if not start < end or not step > 0.0 or not (end - start) / step <= MOST_TIMES:
         raise Failed(f"--time {options.time!r}: accepted: an end after the start, a step above 0 s, at most {MOST_TIMES:,} steps")
-    times = np.append(np.arange(start, end, step), end)
+    # TDB differs from UTC by its periodic terms: a last step of milliseconds is none.
+    count = max(1, int(np.ceil((end - start - min(5e-3, 0.1 * step)) / step)))
+    times = np.append(start + step * np.arange(count), end)
     texts = scene.utc(times)
     horizon = scene.horizon(place, HORIZON_AZIMUTHS)
     if horizon.first_deg is None:

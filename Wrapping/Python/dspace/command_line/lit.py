@@ -71,8 +71,8 @@ def run(options):
         lit = ground.scene.lit_area(panel, efficiency=options.efficiency, samples=options.samples)
         azimuth, elevation = ground.scene.sun.angles(site.terrain, (float(site.x), float(site.y)))
         radius = ground.scene.sun.radius_deg
-        source = source_of(options, ground)
-    row = {"lon_deg": place[0], "lat_deg": place[1], "height_m": options.height, "width_m": size[0], "panel_height_m": size[1],
+        source, names = source_of(options, ground), ground.place_names()
+    row = {names[0]: place[0], names[1]: place[1], "height_m": options.height, "width_m": size[0], "panel_height_m": size[1],
            "facing_azimuth_deg": facing[0], "facing_elevation_deg": facing[1], "sun_azimuth_deg": azimuth,
            "sun_elevation_deg": elevation, "sun_radius_deg": radius, "irradiance_w_m2": lit.irradiance,
            "efficiency": options.efficiency, "sun_left": left, "area_m2": lit.area, "lit_area_m2": left * lit.lit_area,
@@ -190,7 +190,8 @@ def sun_of(ground, site, options):
 
 
 def told(row):
-    return (f"{row['lon_deg']:.9g},{row['lat_deg']:.9g}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit "
+    x, y = list(row.values())[:2]  # of the site
+    return (f"{x:.9g},{y:.9g}: {row['lit_area_m2']:.6g} of {row['area_m2']:.6g} m^2 lit "
             f"({row['lit_percent']:.2f} %), projected area {row['projected_area_m2']:.6g} m^2, power {row['power_w']:.6g} W; Sun "
             f"azimuth {row['sun_azimuth_deg']:.5f}, elevation {row['sun_elevation_deg']:.5f} deg, "
             f"{row['irradiance_w_m2']:.6g} W/m^2{eclipse_of(row)}")

@@ -91,12 +91,12 @@ def run_span(options, out, starts, ends):
         ground = MeasuredGround(scene, options)
         for start, end in zip(starts, ends):
             start_place, end_place = (place if isinstance(place, str) else ground.site(place) for place in (start, end))
-            head = {**end_row("from", start, True), **end_row("to", end, True)}
+            head = {**end_row(ground, "from", start, True), **end_row(ground, "to", end, True)}
             for contact in scene.sight_contacts(start_place, end_place, begin, finish, step=step, mask=options.mask, playback=playback,
                                                 without=options.without):
                 rows.append({**head, **contact_row(contact)})
         found = {**source_of(options, ground), "begin_s": begin, "end_s": finish, "step_s": step, "mask_deg": options.mask, "contacts": rows}
-        names = [span_name(end_row("from", start, True), end_row("to", end, True)) for start, end in zip(starts, ends)]
+        names = [span_name(end_row(ground, "from", start, True), end_row(ground, "to", end, True)) for start, end in zip(starts, ends)]
         if out is not None:
             write(out, found, rows or [dict.fromkeys(contact_row(None))], lambda figure: draw_span(figure, begin, finish, names, rows))
     if options.json:
@@ -185,13 +185,13 @@ def joined(lines):
 
 
 def rows_of(ground, starts, ends, lines, recorded):
-    where = ground.degrees_of(lines.point)
+    where, names = ground.degrees_of(lines.point), ground.place_names("obstacle_")
     rows = []
     for i, (start, end) in enumerate(zip(starts, ends)):
-        row = {**end_row("from", start, recorded), **end_row("to", end, recorded), "clear": bool(lines.clear[i]),
+        row = {**end_row(ground, "from", start, recorded), **end_row(ground, "to", end, recorded), "clear": bool(lines.clear[i]),
                "range_m": lines.range[i],
                "clearance_m": lines.clearance[i], "clearance_deg": lines.clearance_deg[i],
-               "obstacle_distance_m": lines.distance[i], "obstacle_lon_deg": where[i, 0], "obstacle_lat_deg": where[i, 1],
+               "obstacle_distance_m": lines.distance[i], names[0]: where[i, 0], names[1]: where[i, 1],
                "obstacle_height_m": where[i, 2]}
         if recorded:
             row["obstacle"] = lines.object[i].name if lines.object[i] is not None else lines.terrain[i] or None
@@ -206,21 +206,28 @@ def rows_of(ground, starts, ends, lines, recorded):
     return rows
 
 
-def end_row(end, place, recorded):
+def end_row(ground, end, place, recorded):
     """An end as values of a row; every row of a recording has the same ones."""
     frame, place = (place, (None,) * 3) if isinstance(place, str) else (None, place)
-    row = {f"{end}_lon_deg": place[0], f"{end}_lat_deg": place[1], f"{end}_height_m": place[2]}
+    names = ground.place_names(f"{end}_")
+    row = {names[0]: place[0], names[1]: place[1], f"{end}_height_m": place[2]}
     return {f"{end}_frame": frame, **row} if recorded else row
 
 
 def place_text(row, end):
-    return row.get(f"{end}_frame") or ",".join(f"{row[f'{end}_{name}']:.9g}" for name in ("lon_deg", "lat_deg", "height_m"))
+    return row.get(f"{end}_frame") or ",".join(f"{row[f'{end}_{name}']:.9g}" for name in (*names_in(row, f"{end}_"), "height_m"))
+
+
+def names_in(row, prefix):
+    """What the two coordinates of a place of a row are called."""
+    return ("lon_deg", "lat_deg") if f"{prefix}lon_deg" in row else ("map_x", "map_y")
 
 
 def told(row):
+    x, y = (row[f"obstacle_{name}"] for name in names_in(row, "obstacle_"))
     text = f"{place_text(row, 'from')} to {place_text(row, 'to')}: " + ("clear" if row["clear"] else (
         f"blocked{' by ' + row['obstacle'] if row.get('obstacle') else ''} after {row['obstacle_distance_m']:.3f} m at "
-        f"{row['obstacle_lon_deg']:.7g}, {row['obstacle_lat_deg']:.7g}, height {row['obstacle_height_m']:.3f} m"))
+        f"{x:.7g}, {y:.7g}, height {row['obstacle_height_m']:.3f} m"))
     text += f"; range {row['range_m']:.3f} m"
     if np.isfinite(row["clearance_m"]):  # pictures know none
         text += f", clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"

@@ -122,6 +122,10 @@ class MeasuredGround:
         name = self.terrain.name if self.terrain is not None else None
         return {"terrain": name, "on_body": self.on_body, "recording": str(self._recording)}
 
+    def place_names(self, prefix=""):
+        """What two coordinates of a place are called in results: degrees, or map coordinates of terrain without a CRS."""
+        return tuple(prefix + name for name in (("lon_deg", "lat_deg") if self.crs else ("map_x", "map_y")))
+
     def site(self, place):
         """The Site of longitude, latitude and height above the ground; of map x and y without a CRS."""
         if self.terrain is None:

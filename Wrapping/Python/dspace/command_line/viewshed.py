@@ -42,7 +42,7 @@ def run(options):
             made = ground.scene.viewshed(sites, path, target_height=options.target_height, radius=options.radius,
                                          quantities=quantities, extent=extent_of(options), cell_size=options.cell_size,
                                          replace=options.replace, **common(options))
-            found = {**source_of(options, ground), "sites": [{"lon_deg": place[0], "lat_deg": place[1]} for place in places], "height_m": options.height,
+            found = {**source_of(options, ground), "sites": [dict(zip(ground.place_names(), place)) for place in places], "height_m": options.height,
                      "target_height_m": options.target_height, "radius_m": options.radius, "columns": made.columns,
                      "rows": made.rows, "cell_size": made.cell_size}
             where = ", ".join(f"{place[0]:g}, {place[1]:g}" for place in places[:3])

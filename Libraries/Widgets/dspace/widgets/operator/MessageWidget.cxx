@@ -11,6 +11,7 @@
 #include <QLabel>
 #include <QLineEdit>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QScrollBar>
 #include <QTreeWidget>
 #include <QVBoxLayout>
@@ -60,8 +61,18 @@ void Paint(QTreeWidgetItem* item, int severity) {
 MessageWidget::MessageWidget(QWidget* parent) : QWidget(parent) {
   auto* column = new QVBoxLayout(this);
   column->setContentsMargins(4, 4, 4, 4);
-  this->Questions_ = new QVBoxLayout;
-  column->addLayout(this->Questions_);
+  auto* questions = new QWidget;
+  this->Questions_ = new QVBoxLayout(questions);
+  this->Questions_->setContentsMargins(0, 0, 0, 0);
+  this->Area_ = new QScrollArea; // several questions may be higher than the dock
+  this->Area_->setObjectName(QStringLiteral("questions"));
+  this->Area_->setWidget(questions);
+  this->Area_->setWidgetResizable(true);
+  this->Area_->setFrameShape(QFrame::NoFrame);
+  this->Area_->setSizeAdjustPolicy(QAbstractScrollArea::AdjustToContents);
+  this->Area_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Maximum);
+  this->Area_->hide();
+  column->addWidget(this->Area_);
   auto* row = new QHBoxLayout;
   this->Severity_ = new QComboBox;
   this->Severity_->setObjectName(QStringLiteral("severity"));
@@ -214,6 +225,7 @@ void MessageWidget::ShowQuestions(const Shown& shown) {
                                    int(question.severity()), shown.canAnswer);
       this->Questions_->addWidget(panel);
       panel->show();
+      this->Area_->show();
       this->Panels_[question.name()] = panel;
       emit this->asked(name);
     }
@@ -227,6 +239,7 @@ void MessageWidget::ShowQuestions(const Shown& shown) {
       ++it;
     }
   }
+  this->Area_->setVisible(!this->Panels_.empty());
 }
 
 QWidget* MessageWidget::Panel(const QString& name, const QString& text, const QStringList& choices,

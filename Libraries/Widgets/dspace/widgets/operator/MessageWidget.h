@@ -12,6 +12,7 @@
 
 class QComboBox;
 class QLineEdit;
+class QScrollArea;
 class QTreeWidget;
 class QVBoxLayout;
 
@@ -75,6 +76,7 @@ private:
   QComboBox* Severity_ = nullptr;
   QLineEdit* Filter_ = nullptr;
   QTreeWidget* Table_ = nullptr;
+  QScrollArea* Area_ = nullptr; // of the questions
   QVBoxLayout* Questions_ = nullptr;
   std::map<std::string, QWidget*> Panels_; // by question
   Shown Last_;                             // of the last look; its log is not used

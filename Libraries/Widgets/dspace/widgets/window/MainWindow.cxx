@@ -440,8 +440,14 @@ bool MainWindow::Connect(const QString& address) {
   return this->Run(QStringLiteral("app.connect(%1)").arg(Quoted(address)));
 }
 
-bool MainWindow::Listen(const QString& address) {
-  return this->Run(QStringLiteral("app.listen(%1)").arg(Quoted(address)));
+bool MainWindow::Listen(const QString& address, const QStringList& roots) {
+  QStringList quoted;
+  for (const QString& root : roots) {
+    quoted << Quoted(QFileInfo(root).absoluteFilePath());
+  }
+  return this->Run(roots.isEmpty() ? QStringLiteral("app.listen(%1)").arg(Quoted(address))
+                                   : QStringLiteral("app.listen(%1, roots=[%2])")
+                                         .arg(Quoted(address), quoted.join(QStringLiteral(", "))));
 }
 
 bool MainWindow::RestoreLayout(const QString& name) {
@@ -453,13 +459,15 @@ QString MainWindow::PlugInFolder() {
          QStringLiteral("/plugins");
 }
 
-void MainWindow::LoadPlugIns(const QStringList& names) {
+bool MainWindow::LoadPlugIns(const QStringList& names) {
   if (QFileInfo(PlugInFolder()).isDir()) {
     this->Run(QStringLiteral("app.plugins.load_folder(%1, app)").arg(Quoted(PlugInFolder())));
   }
+  bool all = true;
   for (const QString& name : names) {
-    this->Run(QStringLiteral("app.load_plugin(%1)").arg(Quoted(name)));
+    all = this->Run(QStringLiteral("app.load_plugin(%1)").arg(Quoted(name))) && all;
   }
+  return all;
 }
 
 bool MainWindow::Open(const QString& path) {
@@ -574,9 +582,10 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
   this->Marks_->Add(widget, of, viewport);
   this->Overlays_->Add(widget, of, viewport);
   this->Libraries_->AddView(widget);
-  if (!this->focusWidget() ||
-      (this->ConsoleDock_->isAncestorOf(this->focusWidget()) && !this->Console_->IsInUse())) {
-    widget->setFocus(); // the keys of views work at once
+  const QWidget* focus = this->focusWidget();
+  if (!focus || qobject_cast<const ViewportWidget*>(focus) ||
+      (this->ConsoleDock_->isAncestorOf(focus) && !this->Console_->IsInUse())) {
+    widget->setFocus(); // its keys work at once
   }
   if (this->Shell_->GetLayouts()->Place(dock)) { // a layout has it
     return;

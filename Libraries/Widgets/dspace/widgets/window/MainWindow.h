@@ -58,12 +58,14 @@ public:
   // A model, raster, robot, recording or Python script; false: it could not be opened, which is
   // shown.
   bool Open(const QString& path);
-  // app.connect() and app.listen().
+  // app.connect() and app.listen(). roots: folders whose files the simulation may name; none: the
+  // working folder.
   bool Connect(const QString& address);
-  bool Listen(const QString& address);
+  bool Listen(const QString& address, const QStringList& roots = {});
   bool RestoreLayout(const QString& name);
   // Plug-ins by name, after those in the folder of the user's plug-ins (PlugInFolder()).
-  void LoadPlugIns(const QStringList& names);
+  // Returns whether all of `names` were loaded.
+  bool LoadPlugIns(const QStringList& names);
   static QString PlugInFolder();
   bool Run(const QString& python);
   ConsoleWidget* Console() const { return this->Console_; }

@@ -149,6 +149,20 @@ void ViewPanes::Tile() {
       this->Window_->splitDockWidget(docks[i - columns], docks[i], Qt::Vertical);
     }
   }
+  // Splitting halves the last one again and again.
+  const auto equal = [this](const QList<QDockWidget*>& among, Qt::Orientation along) {
+    this->Window_->resizeDocks(among, QList<int>(among.size(), 1000), along);
+  };
+  QList<QDockWidget*> first;
+  for (std::size_t i = 0; i < std::min(columns, docks.size()); ++i) {
+    first << docks[i];
+    QList<QDockWidget*> column;
+    for (std::size_t j = i; j < docks.size(); j += columns) {
+      column << docks[j];
+    }
+    equal(column, Qt::Vertical);
+  }
+  equal(first, Qt::Horizontal);
 }
 
 void ViewPanes::Split(const Pane& pane, const Pane& beside, const QString& side) {
