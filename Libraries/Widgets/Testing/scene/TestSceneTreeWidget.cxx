@@ -449,6 +449,32 @@ TEST_F(SceneTreeTest, TheContextMenuAsksAndCopies) {
   EXPECT_EQ(widget.Reference(), rover);
 }
 
+TEST_F(SceneTreeTest, DeepRowsHaveRoomForTheirNames) {
+  SceneTreeWidget widget;
+  widget.SetScene(scene);
+  Show(widget);
+  widget.resize(320, 700);
+  QTest::qWait(50);
+  auto* view = widget.View();
+  dspace::FrameId deep = rover;
+  for (int i = 0; i < 12; ++i) {
+    deep = scene->Frames().Create(deep, "link_" + std::to_string(i));
+  }
+  widget.Refresh();
+  const int narrow = view->columnWidth(SceneTreeModel::NameColumn);
+  EXPECT_LE(narrow, 320);
+  widget.Select({deep, 0}); // opens what is above it
+  ASSERT_TRUE(QTest::qWaitFor([&] {
+    const QRect row = view->visualRect(view->currentIndex());
+    return view->currentIndex().data().toString() == "link_11" &&
+           row.width() >= 16 + view->fontMetrics().horizontalAdvance("link_11");
+  }));
+  EXPECT_GT(view->columnWidth(SceneTreeModel::NameColumn), narrow);
+  view->collapseAll(); // the other columns come back into view
+  EXPECT_TRUE(
+      QTest::qWaitFor([&] { return view->columnWidth(SceneTreeModel::NameColumn) == narrow; }));
+}
+
 TEST_F(SceneTreeTest, AHandlersErrorIsShown) {
   SceneTreeWidget widget;
   widget.SetScene(scene);
