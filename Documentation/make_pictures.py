@@ -12,7 +12,7 @@ from pictures.paths import DATA, IMAGES  # noqa: E402
 
 EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo_drive, scenes.movie, scenes.banner, vtk.pipeline, vtk.props,
               vtk.own_object, lenses.lenses, lenses.live_lens, lenses.shutters, light.photometry, sky.stars,
-              measure.measure_sites, measure.measure_ensemble, application.application,
+              measure.measure_sites, measure.measure_link, measure.measure_ensemble, application.application,
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages,
               application.application_overlay)

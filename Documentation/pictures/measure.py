@@ -62,6 +62,18 @@ def polar_terrain():
         yield path
 
 
+def measure_link():
+    """Where generated ground at the Moon's south pole sees a station of the Deep Space Network, and the paths of the Sun and the Earth over
+    the horizon of one site, for a lunation."""
+    with polar_terrain() as ground:
+        stations = [word for place in ("-116.89,35.4267,970", "-4.248,40.4314,830", "148.9813,-35.4014,690") for word in ("--station", place)]
+        assert main(["illumination", "--terrain", str(ground), "--from", "2026-01-01", "--to", "2026-01-30T12:00", "--step", "7200",
+                     "--azimuths", "180", "--cell-size", "400", "--height", "2", "--quantity", "station_fraction", *stations,
+                     "--station-mask", "10", "--out", str(IMAGES / "measure_link.png")]) == 0
+        assert main(["horizon", "--terrain", str(ground), "--site", "222.7,-89.45", "--height", "2", "--azimuths", "1440", "--time",
+                     "2026-01-01,2026-01-30T12:00,3600", "--out", str(IMAGES / "measure_paths.png")]) == 0
+
+
 def measure_sites():
     """The best-lit sites within 4 km of the ridge's middle, for two masts, over three lunations."""
     with polar_terrain() as ground:

@@ -156,7 +156,7 @@ def frame_of(made):
     if made.in_degrees:
         middle = min(abs(0.5 * (edges[2] + edges[3])), 89.0)
         return edges, 1.0 / np.cos(np.radians(middle)), ("longitude [deg]", "latitude [deg]")
-    return edges, 1.0, ("map x", "map y")
+    return edges, 1.0, (f"map x{made.unit and f' [{made.unit}]'}", f"map y{made.unit and f' [{made.unit}]'}")
 
 
 def told(out, made):

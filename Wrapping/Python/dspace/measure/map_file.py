@@ -145,6 +145,14 @@ class MapFile:
         srs = self._dataset().GetSpatialRef()
         return srs is not None and bool(srs.IsGeographic())
 
+    @property
+    def unit(self):
+        """Of map coordinates: "deg", "m" (or the CRS's name of another one); "" where the file has no CRS."""
+        srs = self._dataset().GetSpatialRef()
+        if srs is None or not (srs.IsGeographic() or srs.IsProjected()):
+            return ""
+        return "deg" if srs.IsGeographic() else "m" if srs.GetLinearUnits() == 1.0 else srs.GetLinearUnitsName()
+
     def _dataset(self):
         try:
             from osgeo import gdal
