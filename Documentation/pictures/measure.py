@@ -69,7 +69,7 @@ def measure_link():
         stations = [word for place in ("-116.89,35.4267,970", "-4.248,40.4314,830", "148.9813,-35.4014,690") for word in ("--station", place)]
         assert main(["illumination", "--terrain", str(ground), "--from", "2026-01-01", "--to", "2026-01-30T12:00", "--step", "7200",
                      "--azimuths", "180", "--cell-size", "400", "--height", "2", "--quantity", "station_fraction", *stations,
-                     "--station-mask", "10", "--out", str(IMAGES / "measure_link.png")]) == 0
+                     "--station-mask", "10", "--replace", "--out", str(IMAGES / "measure_link.png")]) == 0
         assert main(["horizon", "--terrain", str(ground), "--site", "222.7,-89.45", "--height", "2", "--azimuths", "1440", "--time",
                      "2026-01-01,2026-01-30T12:00,3600", "--out", str(IMAGES / "measure_paths.png")]) == 0
 
