@@ -59,13 +59,13 @@ float discCosine(float c, vec2 disc)
 
 #if defined(DSPACE_SHADOWED) && !defined(DSPACE_HORIZON)
 // Triangles hide the light that smooth normals let in, each as a whole or in stripes of the shadow maps.
-// Light falls to nothing where it grazes the triangle. planeVC: its normal, of any length; cosines with
-// the light of the smooth normal N and of the triangle.
+// Light falls to nothing where it grazes the triangle; above 12 degrees it stays as it is. The cosines
+// are those of the smooth normal N and of the triangle's, planeN, with the light.
 // M. Chiang, Y. K. Li, B. Burley, "Taming the Shadow Terminator", SIGGRAPH Talks (2019).
 float terminator(vec3 N, vec3 planeN, float smoothCosine, float planeCosine)
 {
   float g = clamp(planeCosine / max(smoothCosine * dot(N, planeN), 1e-5), 0.0, 1.0);
-  return g * (1.0 + g - g * g);
+  return mix(g * (1.0 + g - g * g), 1.0, smoothstep(0.05, 0.2, planeCosine));
 }
 #endif
 

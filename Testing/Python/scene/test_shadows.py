@@ -291,3 +291,26 @@ def test_served_and_replayed_pictures_are_the_same_to_the_byte(tmp_path, ground)
             view = playback.session.viewports["view"]
             assert view.shadows and view.shadow_map_size == 1024
             assert pictures_of(view) == local[step]
+
+
+def test_triangles_that_graze_the_light_have_no_stripes(scene):
+    """One square whose smooth normals lean 20 degrees further to the Sun than it does. While the Sun is 30 degrees above it, shadows
+    change nothing; at 1 degree its smooth light would be a third of full, and it is nearly dark and even; below it, black."""
+    square = np.array([(-5, -5, 0), (5, -5, 0), (5, 5, 0), (-5, 5, 0)], float)
+    lean = np.radians(20.0)
+    scene.add_mesh(square, [(0, 1, 2), (0, 2, 3)], normals=np.tile((np.sin(lean), 0.0, np.cos(lean)), (4, 1)), name="square")
+    scene.add_camera("above", eye=(0, 0, 20), target=(0, 0, 0), up=(0, 1, 0), fov_deg=20)
+    viewport = scene.add_viewport((96, 96), samples=1)
+
+    def light(elevation, shadows):
+        scene.sun.set(direction=(np.cos(np.radians(elevation)), 0.0, np.sin(np.radians(elevation))), radius_deg=0.2666, irradiance=np.pi)
+        viewport.set(shadows=shadows)
+        return viewport.radiance()[8:-8, 8:-8, 1].astype(float)
+    full = light(30.0, False)
+    assert full.min() > 0.3
+    np.testing.assert_allclose(light(30.0, True), full, rtol=1e-5)
+    low = light(1.0, True)
+    assert light(1.0, False).min() > 0.25 * full.min()
+    assert low.max() < 0.15 * light(1.0, False).min()
+    assert low.max() - low.min() < 0.1 * light(1.0, False).min()
+    assert light(-5.0, True).max() < 1e-6 < light(-5.0, False).min()
