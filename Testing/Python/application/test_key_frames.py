@@ -144,13 +144,14 @@ def test_the_file_may_hold_more_and_keeps_it(app, path):
 def test_changes_that_fail_change_nothing(app, run, path):
     three_keys(app, run)
     before, words = app.movie.keys, pathlib.Path(f"{path}.movie.toml").read_text()
+    eye = app.scene.add_camera("eye", eye=(6, -8, 5), target=(0, 0, 0))
     for change, text in ((lambda: app.movie.move_key(1, 120.0), "less than 109"),
                          (lambda: app.movie.add_key(app.view, 99.0), "100 to 110"),
                          (lambda: app.movie.add_key(app.view, 105.0), "without a key"),
                          (lambda: app.movie.edit_key(0, fov_deg=500), "fov_deg"),
                          (lambda: app.movie.edit_key(7, easing="rest"), "there is no key 7"),
                          (lambda: app.movie.set(rate=-1), "rate"),
-                         (lambda: app.movie.add_key(app.new_view(), 104.0), "one of the same recording")):
+                         (lambda: app.movie.add_key(app.scene.add_viewport((64, 48), eye), 104.0), "one of the same recording")):
         with pytest.raises(dspace.Error, match=text):
             change()
         assert app.movie.keys == before
