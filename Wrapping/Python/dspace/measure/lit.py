@@ -88,7 +88,12 @@ class Lit:
         progress(fraction): called after each row; what it raises ends the work."""
         about = "projected areas"
         single = isinstance(objects, str) or not isinstance(objects, (list, tuple, set, frozenset, np.ndarray))
-        objects = [objects] if single else list(objects)
+        objects = [objects] if single else items(objects, "the objects", about, "objects, or their names")
+        object_ids(self._scene, objects, about)  # rejects what is none
+        if not 0.0 <= real(efficiency, "the efficiency", about) <= 1.0:
+            reject(about, "the efficiency", efficiency, "0 to 1")
+        if progress is not None and not callable(progress):
+            reject(about, "progress", progress, "a function, or None", WrongType)
         if not 1 <= integer(azimuths, "azimuths", about) <= 3600:
             reject(about, "azimuths", azimuths, "1 to 3600")
         if not 2 <= integer(rows, "rows", about) <= 1000:
