@@ -67,7 +67,7 @@ def run(options):
         horizon = scene.horizon(place, options.azimuths, method=options.method)
         where, names = ground.degrees_of(horizon.point), ground.place_names()
         found = source_of(options, ground)
-        paths = paths_of(scene, place, options) if options.time is not None else []
+        paths = paths_of(scene, place, horizon, options) if options.time is not None else []
     turn = np.nan if horizon.first_deg is None else horizon.first_deg
     rows = [{"azimuth_deg": azimuth, "true_azimuth_deg": (azimuth + turn) % 360.0, "elevation_deg": elevation,
              "distance_m": distance, names[0]: point[0], names[1]: point[1], "height_m": point[2]}
@@ -101,7 +101,7 @@ def run(options):
         print(f"{out}: {len(rows)} azimuths")
 
 
-def paths_of(scene, place, options):
+def paths_of(scene, place, horizon, options):
     """(name, rows) of each body: where it stands over the site, and how high above the horizon in its direction."""
     parts = options.time.split(",")
     if len(parts) not in (2, 3):
@@ -117,7 +117,8 @@ def paths_of(scene, place, options):
     count = max(1, int(np.ceil((end - start - min(5e-3, 0.1 * step)) / step)))
     times = np.append(start + step * np.arange(count), end)
     texts = scene.utc(times)
-    horizon = scene.horizon(place, HORIZON_AZIMUTHS)
+    if options.method == "image" or options.azimuths < HORIZON_AZIMUTHS:
+        horizon = scene.horizon(place, HORIZON_AZIMUTHS)
     if horizon.first_deg is None:
         raise Failed("--time: the terrain has no longitudes and latitudes; accepted: terrain on a body")
     paths = []

@@ -14,7 +14,7 @@ class ScenePlace:
     def __init__(self, scene, place, what, about):
         self._scene = scene
         if isinstance(place, Frame):
-            place = place.path  # a playback that goes back makes its frames anew
+            place = place.path  # a Playback creates its frames again when it seeks back
         if not isinstance(place, (str, Site)):
             reject(about, what, place, "a Site, a Frame or its path")
         if isinstance(place, Site):

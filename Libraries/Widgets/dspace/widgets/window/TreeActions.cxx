@@ -20,14 +20,6 @@ constexpr std::array<Name, 6> Names{{{SceneAction::Chase, "chase"},
                                      {SceneAction::Trail, "trail"},
                                      {SceneAction::Axes, "axes"}}};
 
-bool IsOnlyOne(const Scene& scene, ObjectId id) {
-  const GraphicsObject& object = scene.Object(id);
-  return std::none_of(scene.Objects().begin(), scene.Objects().end(), [&](const auto& entry) {
-    return entry.first != id && entry.second.frame == object.frame &&
-           entry.second.name == object.name;
-  });
-}
-
 } // namespace
 
 QString LineOf(const SceneRequest& request, const Scene& scene) {
@@ -42,10 +34,7 @@ QString LineOf(const SceneRequest& request, const Scene& scene) {
                      .arg(Quoted(QString::fromLatin1(name->second)),
                           Quoted(QString::fromStdString(scene.Frames().Path(item.frame))));
   if (item.object != 0) {
-    const std::string& called = scene.Object(item.object).name;
-    line += QStringLiteral(", ") + (!called.empty() && IsOnlyOne(scene, item.object)
-                                        ? Quoted(QString::fromStdString(called))
-                                        : QString::number(item.object));
+    line += QStringLiteral(", ") + Quoted(QString::fromStdString(scene.Object(item.object).name));
   }
   return line + QLatin1Char(')');
 }

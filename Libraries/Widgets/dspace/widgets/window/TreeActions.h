@@ -13,11 +13,12 @@ class Scene;
 
 namespace dspace::widgets {
 
-// app.act("trail", "rover"), app.act("hide", "rover", "hull"): an object is named, or by its id
-// where its frame has another one of its name. Empty: the item is not in the scene.
+// app.act("trail", "rover"), app.act("hide", "rover", "hull"). Empty: the item is not in the
+// scene, or the action is no command.
 QString LineOf(const SceneRequest& request, const Scene& scene);
 
-// A request {"do": "tree", "action", "frame", "object"} of such a line; null: the frame itself.
+// A request {"do": "tree", "action", "frame", "object"} of such a line. object: a name or an id;
+// null: the frame itself.
 bool IsTreeRequest(const QJsonObject& request);
 // Throws Error: NotFound for a frame or object that is not in the scene, InvalidArgument for
 // another action.
