@@ -15,7 +15,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 PROTOS = ROOT / "Libraries" / "Session"
 PAGE = ROOT / "Documentation" / "Commands.md"
 FILES = ("commands", "frames", "objects", "robots", "cameras", "viewports", "terrain", "layers", "geodesy",
-         "telemetry", "messages", "sky", "trajectories", "visibility", "sights", "maps", "lenses", "ranges", "common", "service")
+         "telemetry", "messages", "sky", "trajectories", "visibility", "sights", "maps", "work", "lenses", "ranges", "common", "service")
 TYPES = {getattr(Field, name): name[5:].lower() for name in dir(Field) if name.startswith("TYPE_")}
 HEAD = """# The commands
 

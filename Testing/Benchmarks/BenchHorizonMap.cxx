@@ -40,7 +40,7 @@ void Horizons(const MapGround& ground, const TerrainSurface& surface, const std:
   options.height = 2.0;
   options.azimuths = 72;
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", &surface, {}});
+  obstacles.Add(Obstacles::Ground{"ground", {std::shared_ptr<void>(), &surface}, {}});
   std::mt19937 random(5);
   double sum = 0.0;
   const bench::Turns turns = bench::Alternate(

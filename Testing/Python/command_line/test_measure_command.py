@@ -267,7 +267,7 @@ def test_plots(capsys, wall, tmp_path):
     ((*LIT, "--sun", "0,30", "--irradiance", "1", "--distance-au", "1"), "--irradiance, --distance-au: accepted: at most one"),
     ((*LIT, "--sun", "0,30", "--distance-au", "0"), "--distance-au 0: accepted: 1e-06 to 1e+06"),
     ((*LIT, "--sun", "0,30", "--height", "-1"), "its height above the ground is -1; accepted: 0 to 1e12 m"),
-    ((*LIT, "--sun", "0,30", "--out", "a.png"), "--out 'a.png': accepted: a name with .json, .csv"),
+    ((*LIT, "--sun", "0,30", "--out", "a.tif"), "--out 'a.tif': accepted: a name with .json, .csv, .html, .png"),
     (("lit", "--site", "900,20", "--sun", "0,30"), "site (900, 20) of terrain 'terrain': it is off the terrain's data"),
 ])
 def test_rejected(capsys, wall, arguments, text):

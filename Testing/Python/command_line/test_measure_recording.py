@@ -120,6 +120,57 @@ def test_objects_in_the_recorded_sun(capsys, recording, tmp_path):
     assert json.loads(run(capsys, *panel, "--at", 0)[1])["lit_percent"] > 99.0
 
 
+def test_a_panel_on_a_frame(capsys, recording, tmp_path):
+    """50 m before the wall of 20 m, whose shadow is 20 m long."""
+    lit = ("lit", "--recording", recording, "--frame", "/base/mast", "--panel", "2,3", "--facing", "90,45", "--efficiency", 0.5)
+    code, out, err = run(capsys, *lit, "--json", "--out", tmp_path / "lit.csv")
+    assert code == 0, err
+    found = json.loads(out)["frames"][0]
+    assert found["frame"] == "/base/mast" and found["area_m2"] == pytest.approx(6.0)
+    assert found["projected_area_m2"] == pytest.approx(6.0, rel=1e-4) and found["power_w"] == pytest.approx(3000.0, rel=1e-4)
+    # Facing west and 45 degrees up it is edge-on to the Sun: half of the disc lights it, whose mean height is 4 r / 3 pi. Facing
+    # up, the cosine of 45 degrees is left.
+    for facing, power in (("270,45", 3000.0 * 2.0 / (3.0 * np.pi) * np.radians(0.01)), ("0,90", 3000.0 * np.sqrt(0.5))):
+        turned = json.loads(run(capsys, *lit[:7], "--facing", facing, "--efficiency", 0.5, "--json")[1])["frames"][0]
+        assert turned["power_w"] == pytest.approx(power, rel=0.01)
+    for wrong, text in ((("--sun", "1,2"), "--sun: accepted: without --frame"), (("--panel", "0,1"), "each above 0"),
+                        (("--facing", "0,91"), "EL -90 to 90")):
+        code, _, err = run(capsys, *lit, *wrong)
+        assert code == 1 and text in err
+    assert "accepted: with --recording" in run(capsys, "lit", "--terrain", "a.tif", "--frame", "x")[2]
+    needs_module("matplotlib", "python3-matplotlib")
+    for ending in (".png", ".html"):
+        assert run(capsys, *lit, "--out", tmp_path / f"lit{ending}")[0] == 0
+        assert run(capsys, "lit", "--recording", recording, "--site", "93.5,20.5", "--sun", "90,75", "--out", tmp_path / f"site{ending}")[0] == 0
+
+
+def test_a_viewshed_of_frames(capsys, recording, tmp_path):
+    """A mast at 2 m sees what a site of 2 m sees; at 62 m also beyond the wall, from where its line over the edge meets the ground."""
+    view = ("viewshed", "--recording", recording, "--json")
+    for at, height in ((0, 2), (20, 62)):
+        code, out, err = run(capsys, *view, "--at", at, "--frame", "base/mast", "--out", tmp_path / f"frame{at}.tif")
+        assert code == 0, err
+        assert json.loads(out)["sites"] == [{"frame": "base/mast", "map_x": pytest.approx(50.5), "map_y": pytest.approx(20.5),
+                                             "height_m": pytest.approx(height, abs=1e-6)}]
+        assert run(capsys, *view, "--at", at, "--site", "50.5,20.5", "--height", height, "--out", tmp_path / f"site{at}.tif")[0] == 0
+        frame, site = (gdal.Open(str(tmp_path / f"{name}{at}.tif")).ReadAsArray() for name in ("frame", "site"))
+        assert (frame == site).all()
+    assert not gdal.Open(str(tmp_path / "frame0.tif")).ReadAsArray()[20, 102:].any()
+    # Over the wall's edge, 50 m away and 42 m below, the line falls the last 20 m in 23.8 m.
+    row = gdal.Open(str(tmp_path / "frame20.tif")).ReadAsArray()[20]
+    assert not row[102:123].any() and row[126:].all()
+    both = run(capsys, *view, "--at", 20, "--frame", "base/mast", "--frame", "base/far", "--quantity", "count", "--out",
+               tmp_path / "both.tif")
+    assert both[0] == 0, both[2]
+    assert gdal.Open(str(tmp_path / "both.tif")).ReadAsArray()[20, 150] == 2
+    for frame, text in (("base", "--frame base: it is 20 m below the ground"), ("plate", None), ("x", "x")):
+        code, _, err = run(capsys, *view, "--frame", frame, "--out", tmp_path / "x.tif")
+        assert (code == 0) == (text is None) and (text is None or text in err)
+    assert "neither is given" in run(capsys, *view, "--out", tmp_path / "y.tif")[2]
+    assert "accepted: with --recording" in run(capsys, "viewshed", "--terrain", tmp_path / "wall.tif", "--frame", "x", "--out",
+                                               tmp_path / "y.tif")[2]
+
+
 def test_maps_of_the_recorded_terrain(capsys, recording, tmp_path):
     code, out, err = run(capsys, "viewshed", "--recording", recording, "--site", "10.5,20.5", "--height", 2, "--out", tmp_path / "view.tif")
     assert code == 0, err

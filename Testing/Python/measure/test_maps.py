@@ -159,8 +159,9 @@ def test_illumination_on_the_moon(scene, tmp_path):
         scene.illumination_map(horizons, tmp_path / "no.tif", start=start, end=start + step, step=step, terrain=other)
 
 
-def test_the_end_is_no_step_and_another_body_is_told(scene, tmp_path):
-    """Whole hours between two texts: TDB differs from them by microseconds. A body that the CRS does not tell is warned of."""
+def test_the_end_is_no_step_and_another_body_is_rejected(scene, tmp_path, refused):
+    """Whole hours between two texts: TDB differs from them by microseconds. Places in the sky are warned of a body that the CRS does not
+    tell."""
     moon = f'GEOGCS["Moon",DATUM["Moon",SPHEROID["Moon",{R},0]],PRIMEM["Reference",0],UNIT["degree",0.0174532925199433]]'
     path = write_georeferenced(tmp_path / "moon.tif", np.zeros((30, 30), np.float32), (170, 0.05, 0, 0.5, 0, -0.05), moon)
     terrain = scene.add_terrain(path, name="moon", on_body=True)
@@ -169,9 +170,9 @@ def test_the_end_is_no_step_and_another_body_is_told(scene, tmp_path):
                                    quantities=("longest_night",), terrain=terrain)
     assert night.metadata["DSPACE_STEPS"] == "6" and night.metadata["DSPACE_ECLIPSES"] == "yes"
     assert (night.read("longest_night") == 6 * 3600.0).all()  # the far side at full moon
-    with pytest.warns(dspace.DspaceWarning, match="names body 'mars', and its CRS tells 'MOON'"):
+    with refused(dspace.InvalidArgument, "it is a horizon map of body 'MOON', and the command names 'mars'"):
         scene.illumination_map(horizons, tmp_path / "mars.tif", start="2022-11-08T08:00", end="2022-11-08T10:00", body="mars")
-    with pytest.warns(dspace.DspaceWarning, match="names body 'mars'"):
+    with pytest.warns(dspace.DspaceWarning, match="names body 'mars', and its CRS tells 'MOON'"):
         terrain.sky(170.5, 0.2, "sun", body="mars")
     sky = scene.sky("sun", body="moon", site=(170.5, 0.2), time="2022-11-08T08:00")["sun"]
     assert sky.elevation_deg < -60.0

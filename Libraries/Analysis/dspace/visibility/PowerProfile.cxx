@@ -104,7 +104,7 @@ BatteryStep StepBattery(const Battery& battery, double charge, double surplusBef
 PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                           const HorizonLine& horizon, const std::vector<SolarPanel>& panels,
                           const std::optional<Battery>& battery, double solarConstant, double start,
-                          double end, double step, const std::function<void()>& check) {
+                          double end, double step, const std::function<void(double tdb)>& check) {
   Check(panels, battery);
   Require(solarConstant >= 0.0 && solarConstant <= 1e9, "power profile", "the irradiance at 1 au",
           solarConstant, "0 to 1e9 W/m^2");
@@ -113,7 +113,7 @@ PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, cons
   const double none = std::numeric_limits<double>::quiet_NaN();
   const auto look = [&](double tdb) {
     if (check) {
-      check();
+      check(tdb);
     }
     FallbackScope::Begin(tdb);
     return Look(ephemeris, frames, place, BodySun, tdb);

@@ -65,12 +65,13 @@ struct PowerProfile {
 // of the distance, times the part of the disc above the horizon (of even radiance), times the part
 // that the Earth leaves over places on the Moon, and the Moon over places on the Earth: eclipses,
 // by discs of their largest radii, without the Earth's air. Nights are those of the horizon alone.
-// `check` is called at each step; what it throws ends the work. Throws Error(InvalidArgument) as
-// FindContacts, and for values out of range.
+// `check` is called at each step with its time; what it throws ends the work. Throws
+// Error(InvalidArgument) as FindContacts, and for values out of range.
 PowerProfile ProfilePower(const Ephemeris& ephemeris, const Frames& frames, const SkyPlace& place,
                           const HorizonLine& horizon, const std::vector<SolarPanel>& panels,
                           const std::optional<Battery>& battery, double solarConstant, double start,
-                          double end, double step, const std::function<void()>& check = {});
+                          double end, double step,
+                          const std::function<void(double tdb)>& check = {});
 
 // One step of a battery from a charge [J], with the panels' power less the load linear in between.
 struct BatteryStep {

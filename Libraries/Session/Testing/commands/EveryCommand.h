@@ -332,6 +332,8 @@ inline const std::vector<CommandInstance>& EveryCommand() {
       {R"(profile_power { place { celestial { body: "moon" site { longitude_deg: 29 latitude_deg: -84 } } }
            panel { area: 1 tracking: VERTICAL efficiency: 0.3 } battery { capacity_wh: 10 load: 1 } end_s: 1e5 })",
        {}},
+      {R"(await_work { work: 1 wait_s: 30 })",
+       {R"(horizon { measuring { no_terrain: true no_objects: true wait_s: 0 } place { frame: 11 } azimuths: 8 })"}},
       {R"(horizon_map { terrain: "ground" area { extent: [102, 208, 108, 202] } height: 2 azimuths: 8
            file { path: "FOLDER/horizon.tif" replace: true threads: 1 } })",
        {},

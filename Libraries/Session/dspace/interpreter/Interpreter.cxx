@@ -10,6 +10,7 @@
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/ErrorReply.h>
 #include <dspace/messages/TextFields.h>
+#include <dspace/state/Works.h>
 
 namespace dspace::session {
 namespace {
@@ -38,6 +39,7 @@ std::string CommandName(const v1::Command& command) {
 }
 
 Interpreter::Interpreter() {
+  this->State_.works = std::make_shared<Works>();
   AddSceneCommands(this->Registry_);
   AddFrameCommands(this->Registry_);
   AddObjectCommands(this->Registry_);
@@ -60,6 +62,7 @@ Interpreter::Interpreter() {
   AddLitAreaRequest(this->Registry_);
   AddRangeRequests(this->Registry_);
   AddMapRequests(this->Registry_);
+  AddWorkRequests(this->Registry_);
   AddLensRequests(this->Registry_);
   AddExportCommands(this->Registry_);
   AddTelemetryCommands(this->Registry_);

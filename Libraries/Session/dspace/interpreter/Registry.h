@@ -78,6 +78,7 @@ void AddSightRequests(Registry& registry);
 void AddLitAreaRequest(Registry& registry);
 void AddRangeRequests(Registry& registry);
 void AddMapRequests(Registry& registry);
+void AddWorkRequests(Registry& registry);
 void AddExportCommands(Registry& registry);
 void AddTelemetryCommands(Registry& registry);
 void AddMessageCommands(Registry& registry);

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -30,6 +31,8 @@
 
 namespace dspace::session {
 
+class Works;
+
 constexpr const char* DefaultVantage = "main";
 
 // An object of CreateDrawn.
@@ -42,6 +45,7 @@ struct DrawnObject {
 // One scene with its robots, terrains and trails, by name or object.
 struct SceneState {
   std::shared_ptr<Scene> scene;
+  std::optional<double> begin_s; // the least time that was set; none: none was
   std::map<std::string, std::unique_ptr<Robot>> robots;
   std::map<FrameId, ModelNodes> models; // whose nodes are frames, by their base frame
   std::map<std::string, std::unique_ptr<TerrainObject>> terrains;
@@ -96,6 +100,7 @@ struct State {
   std::uint64_t lastTelemetryId = 0; // of all scenes, including removed ones
   CommandFiles files;
   std::shared_ptr<Pictures> pictures; // for measurements; null: this process does not draw
+  std::shared_ptr<Works> works;       // requests in threads of their own; never null
 
   // Throws Error(NotFound) that names the existing scenes.
   SceneState& FindScene(const std::string& name);

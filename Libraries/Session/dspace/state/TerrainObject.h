@@ -28,6 +28,8 @@ public:
   void SetObject(ObjectId object) { this->Object_ = object; }
 
   virtual const TerrainSurface& Surface() const = 0;
+  // The same, for work that may outlive this.
+  virtual std::shared_ptr<const TerrainSurface> HeldSurface() const = 0;
   // Whether S is the body-fixed frame. Points then need three coordinates.
   virtual bool OnBody() const { return false; }
   // The surface without wheel tracks.

@@ -101,7 +101,7 @@ inline std::vector<double> ErrorsOf(const HorizonMap& map, const MapGround& grou
   std::vector<double> errors;
   std::mt19937 random(seed);
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", &surface, {}});
+  obstacles.Add(Obstacles::Ground{"ground", {std::shared_ptr<void>(), &surface}, {}});
   for (int i = 0; i < count; ++i) {
     const int c = int(random() % unsigned(cells.columns));
     const int r = int(random() % unsigned(cells.rows));

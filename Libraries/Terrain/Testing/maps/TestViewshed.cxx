@@ -23,7 +23,7 @@ void ExpectExact(const TerrainSurface& surface, const MapGround& ground,
                  const ViewshedObserver& observer, const MapCells& cells, double margin) {
   const auto held = HeldPosts::Read(*ground.pyramid, 1, 1, {});
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", &surface, {}});
+  obstacles.Add(Obstacles::Ground{"ground", {std::shared_ptr<void>(), &surface}, {}});
   const V foot = surface.Sample(ground.placement.ToScene(observer.post, 0.0)).position_S;
   const V eye = foot + observer.height * surface.Up(foot);
   int hidden = 0;

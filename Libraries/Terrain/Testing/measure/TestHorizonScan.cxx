@@ -38,7 +38,7 @@ public:
   }
   std::vector<HorizonPoint> Scan(std::size_t count) const {
     Obstacles obstacles;
-    obstacles.Add(Obstacles::Ground{"ring", this->Terrain_.get(), {}});
+    obstacles.Add(Obstacles::Ground{"ring", this->Terrain_, {}});
     const V pole(0.0, 0.0, Radius);
     const V up = this->Terrain_->Up(pole);
     const V north = this->Terrain_->North(pole);
@@ -76,7 +76,7 @@ TEST(HorizonScan, ASmoothSphereDipsByItsTangent) {
   const auto terrain =
       StreamedTerrain::Open(globe.File().Write((folder.Path() / "globe.tif").string()), options);
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"globe", terrain.get(), {}});
+  obstacles.Add(Obstacles::Ground{"globe", terrain, {}});
   for (const double height : {2.0, 100.0, 50000.0}) {
     const V place = (globe.radius + height) * Direction(37.0, 20.0);
     const V up = terrain->Up(place);
@@ -106,7 +106,7 @@ double HighestByHand(const GridTerrain& ground, const V& place, double azimuth) 
 TEST(HorizonScan, RoughGroundAgreesWithItsProfiles) {
   const auto ground = Rough(80, 60, 11);
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"rough", ground.get(), {}});
+  obstacles.Add(Obstacles::Ground{"rough", ground, {}});
   V place = ground->MapToScene({1027.3, 1978.1, 0.0});
   place.z() = ground->Sample(place).position_S.z() + 0.8;
   const auto horizon = ScanHorizon(obstacles, place, {}, 24, "place");
@@ -127,7 +127,7 @@ TEST(HorizonScan, OutsideTheDataTheGroundIsFoundAndWhereThereIsNoneNothing) {
   const auto ground =
       Sampled(101, 101, NorthUp(-0.5, 100.5, 1.0), [](const Eigen::Vector2d&) { return 20.0; });
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"flat", ground.get(), {}});
+  obstacles.Add(Obstacles::Ground{"flat", ground, {}});
   const V place = ground->MapToScene({-100.0, 50.0, 70.0}); // west of the data
   const auto horizon = ScanHorizon(obstacles, place, {}, 4, "place");
   EXPECT_NEAR(horizon[1].elevation_deg, -std::atan2(50.0, 200.0) / Degree, 1e-5); // the far edge

@@ -133,7 +133,7 @@ TEST(LitArea, GroundShadesAndBuries) {
     return std::abs(p.x() - 200.0) < 0.1 ? 20.0 : 0.0;
   });
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ridge", ridge.get(), {}});
+  obstacles.Add(Obstacles::Ground{"ridge", ridge, {}});
   const auto at = [&](double x, double z) {
     return Panel(ridge->MapToScene({x, -1.0, z}), {2, 0, 0}, {0, 2, 0});
   };

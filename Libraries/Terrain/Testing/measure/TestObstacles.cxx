@@ -49,14 +49,14 @@ TEST(Obstacles, GroundAndObjectsInOneLine) {
   const auto ground = Level(0.0);
   const V origin = ground->MapToScene({0.0, 0.0, 0.0});
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", ground.get(), {}});
+  obstacles.Add(Obstacles::Ground{"ground", ground, {}});
   const V above = origin + V(0, 0, 3);
   const V below = origin + V(6, 0, -3);
   EXPECT_THROW(obstacles.First(above, below, "start", "end"), Error);
   Pose lower; // the same ground 2 m deeper, in another frame
   lower.position = V(0, 0, -2);
   Obstacles both;
-  both.Add(Obstacles::Ground{"deep", ground.get(), lower});
+  both.Add(Obstacles::Ground{"deep", ground, lower});
   AddTriangle(both, 9, origin.x() + 5.0);
   const Obstacles::Hit hit = both.First(above, origin + V(8, 0, 3), "start", "end");
   EXPECT_EQ(hit.object, 9u);
@@ -67,7 +67,7 @@ TEST(Obstacles, APlaceBelowTheGroundIsNamed) {
   const auto ground = Level(0.0);
   const V origin = ground->MapToScene({0.0, 0.0, 0.0});
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", ground.get(), {}});
+  obstacles.Add(Obstacles::Ground{"ground", ground, {}});
   const Obstacles::Ground& first = obstacles.Grounds().front();
   EXPECT_NEAR(Obstacles::HeightOver(first, origin + V(0, 0, 2.5)), 2.5, 1e-12);
   EXPECT_GT(obstacles.Stand(first, origin, "the mast").z(), origin.z());
@@ -84,7 +84,7 @@ TEST(Obstacles, APlaceBelowTheGroundIsNamed) {
 TEST(Obstacles, TheCheckEndsAMeasurement) {
   const auto ground = Level(0.0);
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", ground.get(), {}});
+  obstacles.Add(Obstacles::Ground{"ground", ground, {}});
   obstacles.SetCheck([] { throw Error(Error::Kind::DeadlineExceeded, "test", "late"); });
   const V high = ground->MapToScene({0.0, 0.0, 5.0});
   EXPECT_THROW(obstacles.First(high, high + V(1, 0, 0), "start", "end"), Error);
@@ -99,7 +99,7 @@ TEST(Obstacles, ARayMeetsTheNearestOfGroundAndTriangles) {
   X_RS.rotation = Eigen::Quaterniond(Eigen::AngleAxisd(0.4, V(1, 2, 3).normalized()));
   X_RS.scale = 2.0;
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"slope", ground.get(), X_RS, 4});
+  obstacles.Add(Obstacles::Ground{"slope", ground, X_RS, 4});
   const V zero_S = ground->MapToScene({0.0, 0.0, 0.0});
   const V from_R = X_RS.Apply(zero_S + V(0, 0, 6));
   const V down_R = X_RS.rotation * V(0, 0, -1);

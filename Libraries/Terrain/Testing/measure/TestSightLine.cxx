@@ -23,7 +23,7 @@ SightLine LineOver(const Obstacles& obstacles, const V& from, const V& to) {
 
 Obstacles Over(const TerrainSurface& surface, const Pose& X_RS = {}) {
   Obstacles obstacles;
-  obstacles.Add(Obstacles::Ground{"ground", &surface, X_RS});
+  obstacles.Add(Obstacles::Ground{"ground", {std::shared_ptr<void>(), &surface}, X_RS});
   return obstacles;
 }
 

@@ -192,11 +192,16 @@ void AddTriangle(const std::array<V, 3>& corners, std::uint32_t object, const V&
 
 std::vector<HorizonPoint> ScanHorizon(const Obstacles& obstacles, const V& place_R,
                                       const LevelAxes& axes, std::size_t count,
-                                      const std::string& label) {
+                                      const std::string& label,
+                                      const std::function<void(double)>& progress) {
   std::vector<HorizonPoint> horizon(count);
+  double rays = 0.0;
   for (const Obstacles::Ground& ground : obstacles.Grounds()) {
     GroundScan scan(obstacles, ground, place_R, axes, label);
     for (std::size_t k = 0; k < count; ++k) {
+      if (progress) {
+        progress(rays++ / double(count * obstacles.Grounds().size()));
+      }
       const HorizonPoint found = scan.Find(2.0 * M_PI * double(k) / double(count));
       if (found.elevation_deg > horizon[k].elevation_deg || !std::isfinite(horizon[k].distance)) {
         horizon[k] = found;

@@ -22,7 +22,7 @@ class Obstacles {
 public:
   struct Ground {
     std::string name; // of the terrain
-    const TerrainSurface* surface = nullptr;
+    std::shared_ptr<const TerrainSurface> surface;
     Pose X_RS;            // of the terrain's frame
     std::uint32_t id = 0; // of its object
   };
@@ -45,7 +45,6 @@ public:
   // this distance of its ends is no obstacle.
   static constexpr double Touch = 1e-6;
 
-  // The surface must outlive this.
   void Add(Ground ground) { this->Grounds_.push_back(std::move(ground)); }
   void Add(std::uint32_t object, std::shared_ptr<const MeshRays> rays, const Eigen::Affine3d& X_RM,
            double albedo = 1.0);

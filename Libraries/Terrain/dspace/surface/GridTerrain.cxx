@@ -100,10 +100,11 @@ std::shared_ptr<GridTerrain> GridTerrain::Load(const std::string& path,
 }
 
 TerrainBounds GridTerrain::DoGetBounds() const {
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
   TerrainBounds bounds;
   const double c = this->Grid_.GetColumns(), r = this->Grid_.GetRows();
   const std::array<double, 2> heights =
-      this->Tracks_->Empty()
+      !this->Undisturbed_
           ? std::array<double, 2>{this->Grid_.GetMinimum(), this->Grid_.GetMaximum()}
           : this->Ray_.Range();
   for (double x : {0.5, c - 0.5})
@@ -123,6 +124,7 @@ void GridTerrain::TracksChanged(const std::vector<TrackReach>& reaches) {
   if (changed.empty()) {
     return;
   }
+  const std::unique_lock<std::shared_mutex> lock(this->Mutex_);
   const std::int64_t columns = this->Grid_.GetColumns(), rows = this->Grid_.GetRows();
   if (!this->Undisturbed_) {
     this->Rolled_.assign(this->Grid_.GetHeights().size(), -1.0f);
@@ -161,6 +163,7 @@ void GridTerrain::TracksChanged(const std::vector<TrackReach>& reaches) {
 }
 
 SurfaceSample GridTerrain::SampleGrid(const Eigen::Vector2d& g, const Eigen::Vector2d& xy_S) const {
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
   const HeightGrid::Facet facet = this->Grid_.FacetAt(g);
   SurfaceSample sample;
   if (!facet.valid)
@@ -184,6 +187,7 @@ SurfaceSample GridTerrain::DoSampleMap(const Eigen::Vector2d& map) const {
 
 void GridTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                             Eigen::Ref<Eigen::VectorXd> heights) const {
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
     const HeightGrid::Facet facet =
         this->Grid_.FacetAt(this->Grid_.ToGrid({points_S(i, 0), points_S(i, 1)}));
@@ -193,6 +197,7 @@ void GridTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
 
 RayHit GridTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
                                 double maximumDistance) const {
+  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
   const Eigen::Vector3d lift(0.0, 0.0, this->Frame_.GetOriginHeight());
   const GridRay::Hit found = this->Ray_.Intersect(origin_S + lift, unit_S, maximumDistance);
   RayHit hit;

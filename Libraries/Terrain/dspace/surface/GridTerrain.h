@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,8 +40,8 @@ struct GridTerrainOptions {
 // Wheel tracks (TrackedGround) lower the posts where they stand, to full depth: between them the
 // surface is flat, so that a rut is shown as wide as its posts and the next ones, and one between
 // the posts of a raster not at all. Ruts do not count where posts are more than four times as far
-// apart as they are wide. The first track doubles the memory of the posts. No other thread may
-// query while tracks change.
+// apart as they are wide. The first track doubles the memory of the posts. Other threads may
+// query while tracks change; Grid() and Rolled() are for the thread that changes them.
 class GridTerrain : public TerrainSurface, public TrackedGround {
 public:
   // Throws what ElevationSource, HeightGrid and SceneFrame throw, and Error(Resource) for more than
@@ -99,6 +100,7 @@ private:
 
   Eigen::Affine2d PixelToMap_;
   SceneFrame Frame_;
+  mutable std::shared_mutex Mutex_; // of the heights
   HeightGrid Grid_;
   GridRay Ray_;
   std::unique_ptr<GroundTracks> Tracks_;           // over the undisturbed posts

@@ -143,6 +143,19 @@ class MeasuredGround:
                          f"accepted: map x {left:.9g} to {right:.9g}, y {bottom:.9g} to {top:.9g}")
         return site
 
+    def below(self, path):
+        """The Site below the origin of a frame of the recorded scene, as high above the ground as that is."""
+        if self._recording is None:
+            raise Failed(f"--frame {path}: accepted: with --recording")
+        if self.terrain is None:
+            raise Failed(f"{self._recording}: the scene has no terrain; accepted: a recording with terrain")
+        point = self.terrain.to_map(self.in_terrain(self.placed(path.lstrip("/"))[:3, 3]))
+        above = point[2] - self.terrain.height(point[0], point[1], map=True)
+        if not above >= 0.0:
+            where = "off the data" if math.isnan(above) else f"{-above:.6g} m below the ground"
+            raise Failed(f"--frame {path}: it is {where} of terrain {self.terrain.name!r}; accepted: a frame above its data")
+        return self.terrain.site(float(point[0]), float(point[1]), float(above))
+
     def placed(self, frame):
         """The pose of a frame in the root, as a matrix (4, 4)."""
         from dspace.frames.poses import Pose

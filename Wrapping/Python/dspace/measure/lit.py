@@ -7,6 +7,7 @@ from dspace.measure.obstacles import object_ids, put_measuring
 from dspace.measure.plans import ProjectedAreas
 from dspace.measure.results import LitArea
 from dspace.measure.scene_places import ScenePlace
+from dspace.measure.work import measure
 
 MOST_OBJECTS = 10_000
 
@@ -18,7 +19,8 @@ class Lit:
         self._scene = scene
 
     def lit_area(self, objects, *, parts=(), sun=None, efficiency=1.0, both_sides=False, samples=4096, terrain=True,
-                 obstacles=True, hide=(), without=(), deadline=None, method="exact", resolution=None):
+                 obstacles=True, hide=(), without=(), deadline=None, method="exact", resolution=None,
+                 progress=None):
         """Measures the sunlit area of objects and the power of solar cells on them, by rays in double precision. Returns
         LitArea.
 
@@ -33,7 +35,7 @@ class Lit:
         From `samples` places of each object (1 to a million, spread over its faces, at least one on each), rays run to 16
         points of the Sun's disc. The lit fraction of a face of which a straight shadow hides a part is off by some
         1/samples**0.75. Shadows are those of the objects themselves, of other objects (obstacles=False: none) and of all
-        terrains (terrain=False: none); hide, without and deadline: as for line_of_sight(). A place below the ground
+        terrains (terrain=False: none); hide, without, deadline and progress: as for line_of_sight(). A place below the ground
         is dark. While a body of the scene stands before a body that is the Sun (Scene.add_body), the part of the disc that it
         leaves at the middle of each object is a factor of the results (LitArea.sun_left), unless `sun` is given.
 
@@ -64,7 +66,7 @@ class Lit:
             if not isinstance(sun, dict):
                 reject(about, "the Sun", sun, "a dict with arguments of Sun.set()", WrongType)
             self._scene.sun._fill(message.sun, sun)
-        reply = self._scene._execute(command).lit_area
+        reply = measure(self._scene, command, message.measuring, about, progress).lit_area
 
         def of(name):
             values = np.array([getattr(surface, name) for surface in reply.surface])

@@ -6,9 +6,11 @@ from dspace.errors import InvalidArgument, WrongType
 from dspace.frames.poses import Pose
 from dspace.measure.obstacles import object_ids, put_measuring
 from dspace.measure.results import Horizon, LinesOfSight
+from dspace.measure.work import measure
 from dspace.terrain.site import Site
 
 MOST_LINES = 1_000_000
+FEW_LINES = 100  # are measured at once, without a thread
 PLACE = "a Site, a Frame, a path, or an array (..., 3) of points [m]"
 
 
@@ -19,7 +21,7 @@ class Sights:
         self._scene = scene
 
     def line_of_sight(self, start, end, *, frame=None, wavelength=None, terrain=True, objects=True, hide=(), without=(),
-                      clearance=True, deadline=None, method="exact", resolution=None):
+                      clearance=True, deadline=None, method="exact", resolution=None, progress=None):
         """Tests lines of sight by rays in double precision. Returns LinesOfSight.
 
         start, end: a Site (Terrain.site), a Frame or the path of one (its origin), or an array (..., 3) of points [m] in
@@ -39,6 +41,9 @@ class Sights:
         margin (clearance_deg) is less than an angle of a pixel (image_pixel_deg). Pictures draw terrain more coarsely beyond half
         of its level_size posts.
         resolution: pixels of a picture of 90 degrees, 16 to 16384 (default 2048).
+
+        progress: called as progress(fraction, left_s) while a long measurement goes on; what it raises cancels it. A server serves its
+        other clients meanwhile.
 
         Raises dspace.InvalidArgument for a start that is its end, for a place below the ground of a terrain that is an
         obstacle, and for a Site off the data or where there is none; dspace.DeadlineExceeded."""
@@ -63,17 +68,22 @@ class Sights:
             pair = message.pair.add()
             starts.put(i, pair, "from", "from_site")
             ends.put(i, pair, "to", "to_site")
-        return self._lines(self._scene._execute(command).line_of_sight, shape, wavelength is not None, method)
+        if count > FEW_LINES or progress is not None:
+            reply = measure(self._scene, command, message.measuring, about, progress)
+        else:
+            reply = self._scene._execute(command)
+        return self._lines(reply.line_of_sight, shape, wavelength is not None, method)
 
     def horizon(self, place, azimuths=1440, *, frame=None, terrain=True, objects=True, hide=(), without=(), deadline=None,
-                method="exact", resolution=None):
+                method="exact", resolution=None, progress=None):
         """Measures the horizon around a place by rays in double precision. Returns a Horizon: at each of `azimuths` (1 to
         a million) evenly spaced azimuths the greatest elevation at which a ray meets an obstacle, to 1e-6 degrees.
 
         place: one place, as for line_of_sight(): a Site, a Frame, a path, or a point (3,) in `frame`. North is that of the
         terrain below the place; without terrain the Y axis of the place's frame, whose Z axis is up. terrain, objects,
         hide, without, deadline and errors: as for line_of_sight(). method: "exact"; "image", by four pictures of 90 degrees, or
-        "both": image_elevation_deg and more beside the exact results. resolution: pixels along a side of a picture."""
+        "both": image_elevation_deg and more beside the exact results. resolution: pixels along a side of a picture. progress: as for
+        line_of_sight()."""
         about = "horizon"
         command = self._scene._command()
         message = command.horizon
@@ -86,7 +96,7 @@ class Sights:
         if places.shape != ():
             raise InvalidArgument(f"{about}: the place has the shape {places.shape}; accepted: one place", about)
         places.put(0, message, "place", "site")
-        reply = self._scene._execute(command).horizon
+        reply = measure(self._scene, command, message.measuring, about, progress).horizon
         cache, origin = {0: None}, getattr(reply, "from")
         objects = np.array([self._cached(cache, id) for id in reply.object], dtype=object)
         image = np.array(reply.image_elevation_deg) if method != "exact" else None

@@ -7,6 +7,7 @@ from dspace.errors import InvalidArgument, WrongType
 from dspace.frames.frame import Frame
 from dspace.measure.plans import Battery, BodySite, Orbiter, Panel, ProjectedAreas
 from dspace.measure.results import Contact, Horizon, Moment, PowerProfile, SkyTrack
+from dspace.measure.work import measure
 from dspace.sky.places import put_place
 from dspace.terrain.site import Site
 from dspace.trajectories.states import put_path
@@ -22,7 +23,7 @@ class Visibility:
     def __init__(self, scene):
         self._scene = scene
 
-    def sky_track(self, place, target, times, *, body=None):
+    def sky_track(self, place, target, times, *, body=None, progress=None):
         """Returns the direction and range of a target over a place at many times: a SkyTrack.
 
         place: a Site (Terrain.site, of one point) above terrain with longitudes and latitudes, a BodySite, or a Frame that
@@ -31,6 +32,8 @@ class Visibility:
         id of a body or spacecraft (its centre); a BodySite of another body; an Orbiter; or a Frame (or its path, with a "/": "/rover") that
         follows the time, hangs on one that does, or moves along a Trajectory below one. times: seconds past J2000 TDB, a number or an array
         of one dimension, at most 2,000,000.
+
+        progress: as for line_of_sight().
 
         Directions have light time and stellar aberration, without refraction."""
         about = "sky track"
@@ -42,13 +45,13 @@ class Visibility:
         if array.ndim > 1 or not array.size:
             raise InvalidArgument(f"{about}: the times have the shape {array.shape}; accepted: one dimension, at least one", about)
         wire.put_array(message, "time_s", array.reshape(-1))
-        found = wire.get_arrays(self._scene._execute(command).sky_track, "azimuth_deg", "elevation_deg", "range", "time_s")
+        found = wire.get_arrays(measure(self._scene, command, message, about, progress).sky_track, "azimuth_deg", "elevation_deg", "range", "time_s")
         if array.ndim == 0:
             found = [float(values[0]) for values in found]
         return SkyTrack(target, found[3], *found[:3])
 
     def contacts(self, place, targets, start, end, *, step=60.0, mask=0.0, station_mask=0.0, upper=False, body=None,
-                 deadline=None):
+                 deadline=None, progress=None):
         """Finds when targets stand above the horizon of a place. Returns a list of Contact, by target and time.
 
         place, body: as for sky_track(). targets: one or a list (at most 1,000) of what sky_track() takes: names or NAIF ids of
@@ -61,7 +64,8 @@ class Visibility:
         upper=True: the top of a body's disc counts, as for sunrise; else its centre. Bodies do not hide a target: the mask does.
 
         Rise and set are found by samples every `step` seconds (at most 2,000,000) and bisection, to 1 ms. Contacts and gaps
-        shorter than a step are found too, unless two of them lie within two steps. deadline: longest time [s].
+        shorter than a step are found too, unless two of them lie within two steps. deadline: longest time [s]. progress: as for
+        line_of_sight().
 
         Raises dspace.InvalidArgument for an end that is not after the start; dspace.NotFound for unknown bodies;
         dspace.DeadlineExceeded."""
@@ -80,12 +84,13 @@ class Visibility:
         def moment(at):
             return Moment(at.time_s, at.azimuth_deg, at.elevation_deg, at.range)
         return [Contact(targets[c.target], moment(c.rise), moment(c.set), moment(c.peak), c.since_before, c.until_after)
-                for c in self._scene._execute(command).contacts.contact]
+                for c in measure(self._scene, command, message, about, progress).contacts.contact]
 
-    def power_profile(self, place, panels, start, end, *, step=3600.0, mask=0.0, battery=None, body=None, deadline=None):
+    def power_profile(self, place, panels, start, end, *, step=3600.0, mask=0.0, battery=None, body=None, deadline=None,
+                      progress=None):
         """Computes the power of solar panels at a place over a span of time. Returns a PowerProfile.
 
-        place, body, mask, deadline: as for contacts(). panels: a Panel, a ProjectedAreas, or a list of them (at most 10,000). battery: a Battery;
+        place, body, mask, deadline, progress: as for contacts(). panels: a Panel, a ProjectedAreas, or a list of them (at most 10,000). battery: a Battery;
         default: none. start, end, step: the power is linear between the samples, of which there are at most 2,000,000.
 
         The irradiance is 1361 W/m^2 at 1 au, times the part of the Sun's disc above the horizon. The disc is of even radiance.
@@ -120,7 +125,7 @@ class Visibility:
         self._put_span(message, start, end, step, about)
         self._put_mask(message.mask, mask, about)
         put_given(message, about, deadline_s=deadline)
-        reply = self._scene._execute(command).power_profile
+        reply = measure(self._scene, command, message, about, progress).power_profile
         arrays = [np.array(getattr(reply, name)) for name in ("time_s", "sun_azimuth_deg", "sun_elevation_deg", "lit", "power")]
         charge = np.array(reply.charge) if battery is not None else None
         return PowerProfile(*arrays, charge, reply.lit_share, reply.energy / 3600.0, reply.longest_night_s, reply.night_start_s,

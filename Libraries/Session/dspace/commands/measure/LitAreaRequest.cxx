@@ -1,8 +1,11 @@
 // Sunlit areas.
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/measure/MeasuredPictures.h>
@@ -123,56 +126,71 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
   const double efficiency = command.has_efficiency() ? command.efficiency() : 1.0;
   constexpr std::size_t Standard = 4096;
   const std::size_t samples = command.samples() == 0 ? Standard : command.samples();
-  const std::vector<std::vector<Face>> faces = FacesOf(context, command);
+  std::vector<std::vector<Face>> faces = FacesOf(context, command);
   const MeasuredScene measured(context, command.measuring(), command.without_object(), name);
   std::optional<SunlitBodies> bodies;
   if (!command.has_sun()) {
     bodies.emplace(scene);
   }
-  v1::LitAreaReply reply;
+  struct Lit {
+    SunDisc sun;
+    double left = 1.0; // of the Sun's disc, by eclipses
+    double irradiance = 0.0;
+  };
+  std::vector<Lit> lights;
+  auto areas = std::make_shared<v1::LitAreaReply>();
   std::optional<MeasuredPictures> pictures;
   if (methods.image) {
     pictures.emplace(context, command.measuring(), measured, name,
                      std::set<ObjectId>(command.object().begin(), command.object().end()));
   }
   for (int i = 0; i < command.object_size(); ++i) {
-    v1::LitAreaReply::Surface* surface = reply.add_surface();
+    v1::LitAreaReply::Surface* surface = areas->add_surface();
     surface->set_object(command.object(i));
-    double left = 1.0; // of the Sun's disc, by eclipses
-    double irradiance = ofLight;
-    SunDisc sun = disc;
+    Lit& lit = lights.emplace_back(Lit{disc, 1.0, ofLight});
     if (bodies) {
       if (const auto body = bodies->From(MiddleOf(faces[i]))) {
-        sun = {body->towards_R, body->radius};
-        left = body->left;
-        irradiance *= body->square;
+        lit.sun = {body->towards_R, body->radius};
+        lit.left = body->left;
+        lit.irradiance *= body->square;
       }
     }
-    surface->set_sun_left(left);
+    surface->set_sun_left(lit.left);
     if (i == 0) {
-      Put(sun.towards_R, reply.mutable_sun());
-      reply.set_irradiance(irradiance);
+      Put(lit.sun.towards_R, areas->mutable_sun());
+      areas->set_irradiance(lit.irradiance);
     }
     if (pictures) {
-      const auto [seen, pixel] = pictures->Seen(command.object(i), faces[i], sun.towards_R);
-      surface->set_image_projected_area(seen * left);
+      const auto [seen, pixel] = pictures->Seen(command.object(i), faces[i], lit.sun.towards_R);
+      surface->set_image_projected_area(seen * lit.left);
       surface->set_image_pixel_area(pixel);
     }
     if (!methods.exact) {
       surface->set_area(AreaOf(faces[i]) * (command.both_sides() ? 2.0 : 1.0));
       surface->set_lit_area(std::numeric_limits<double>::quiet_NaN());
       surface->set_projected_area(surface->image_projected_area());
-      surface->set_power(surface->image_projected_area() * irradiance * efficiency);
-      continue;
+      surface->set_power(surface->image_projected_area() * lit.irradiance * efficiency);
     }
-    const LitArea lit =
-        MeasureLitArea(measured.Get(), sun, faces[i], command.both_sides(), samples);
-    surface->set_area(lit.area);
-    surface->set_lit_area(lit.lit * left);
-    surface->set_projected_area(lit.projected * left);
-    surface->set_power(lit.projected * left * irradiance * efficiency);
   }
-  context.reply.mutable_lit_area()->Swap(&reply);
+  if (!methods.exact) {
+    context.reply.mutable_lit_area()->Swap(areas.get());
+    return;
+  }
+  measured.Measure([faces = std::move(faces), lights, areas, samples, efficiency,
+                    bothSides = command.both_sides()](const Obstacles& obstacles, v1::Reply& reply,
+                                                      const Works::Proceed& proceed) {
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      proceed(double(i) / double(faces.size()));
+      const Lit& light = lights[i];
+      v1::LitAreaReply::Surface* surface = areas->mutable_surface(int(i));
+      const LitArea lit = MeasureLitArea(obstacles, light.sun, faces[i], bothSides, samples);
+      surface->set_area(lit.area);
+      surface->set_lit_area(lit.lit * light.left);
+      surface->set_projected_area(lit.projected * light.left);
+      surface->set_power(lit.projected * light.left * light.irradiance * efficiency);
+    }
+    reply.mutable_lit_area()->Swap(areas.get());
+  });
 }
 
 } // namespace

@@ -1,11 +1,5 @@
 #include <dspace/commands/measure/MapJobs.h>
 
-#include <algorithm>
-#include <chrono>
-#include <condition_variable>
-#include <exception>
-#include <mutex>
-#include <thread>
 #include <utility>
 
 #include <dspace/Error.h>
@@ -13,22 +7,10 @@
 namespace dspace::session {
 
 struct MapJobs::Running {
-  ~Running() {
-    this->cancel = true;
-    if (this->thread.joinable()) {
-      this->thread.join();
-    }
-  }
   std::string key;
   Shape shape;
-  std::thread thread;
-  std::atomic<bool> cancel = false;
-  std::mutex mutex; // of what follows
-  std::condition_variable changed;
-  bool ended = false;
-  bool complete = false;
-  MapProgress progress;
-  std::exception_ptr error;
+  bool complete = false;              // of the thread until its end
+  std::unique_ptr<WorkThread> thread; // last: it uses the others
 };
 
 MapJobs::MapJobs() = default;
@@ -39,12 +21,7 @@ MapJobs::Status MapJobs::Run(const std::string& path, const std::string& key,
                              const std::optional<double>& seconds) {
   auto found = this->Jobs_.find(path);
   if (found != this->Jobs_.end() && found->second->key != key) {
-    bool ended = false;
-    {
-      const std::lock_guard<std::mutex> lock(found->second->mutex);
-      ended = found->second->ended;
-    }
-    if (!ended) {
+    if (!found->second->thread->Wait(0.0)) {
       throw Error(Error::Kind::AlreadyExists, "file '" + path + "'",
                   "another map is being written to it; accepted: another path, or cancel that work "
                   "first");
@@ -57,51 +34,24 @@ MapJobs::Status MapJobs::Run(const std::string& path, const std::string& key,
     auto job = std::make_unique<Running>();
     job->key = key;
     job->shape = begun.shape;
-    MapControl own = control;
-    own.progress = [&job = *job](const MapProgress& progress) {
-      const std::lock_guard<std::mutex> lock(job.mutex);
-      job.progress = progress;
-      return !job.cancel;
-    };
-    job->thread = std::thread([&job = *job, work = std::move(begun.work), own] {
-      bool complete = false;
-      std::exception_ptr error;
-      try {
-        complete = work(own);
-      } catch (...) {
-        error = std::current_exception();
-      }
-      const std::lock_guard<std::mutex> lock(job.mutex);
-      job.complete = complete;
-      job.error = error;
-      job.ended = true;
-      job.changed.notify_all();
-    });
+    job->thread = std::make_unique<WorkThread>(
+        [&job = *job, work = std::move(begun.work), own = control](WorkThread& thread) mutable {
+          own.progress = [&thread](const MapProgress& progress) {
+            thread.Tell({progress.fraction, progress.left});
+            return !thread.IsCancelled();
+          };
+          job.complete = work(own);
+        });
     found = this->Jobs_.emplace(path, std::move(job)).first;
   }
-  Running& job = *found->second;
-  Status status;
-  bool ended = false;
-  std::exception_ptr error;
-  {
-    std::unique_lock<std::mutex> lock(job.mutex);
-    const auto over = [&] { return job.ended; };
-    if (seconds) {
-      job.changed.wait_for(lock, std::chrono::duration<double>(std::min(*seconds, 1e6)), over);
-    } else {
-      job.changed.wait(lock, over);
-    }
-    ended = job.ended;
-    error = job.error;
-    status = {job.complete, job.progress, job.shape};
+  WorkThread& thread = *found->second->thread;
+  if (!thread.Wait(seconds)) {
+    return {false, thread.Told(), found->second->shape};
   }
-  if (ended) {
-    this->Jobs_.erase(found);
-  }
-  if (error) {
-    std::rethrow_exception(error);
-  }
-  return status;
+  const std::unique_ptr<Running> ended = std::move(found->second);
+  this->Jobs_.erase(found);
+  thread.Check();
+  return {ended->complete, thread.Told(), ended->shape};
 }
 
 MapJobs::Status MapJobs::Cancel(const std::string& path) {
@@ -110,9 +60,8 @@ MapJobs::Status MapJobs::Cancel(const std::string& path) {
     return {};
   }
   Running& job = *found->second;
-  job.cancel = true;
-  job.thread.join();
-  const Status status = {job.complete, job.progress, job.shape};
+  job.thread->Cancel();
+  const Status status = {job.complete, job.thread->Told(), job.shape};
   this->Jobs_.erase(found);
   return status;
 }

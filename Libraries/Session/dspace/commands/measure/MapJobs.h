@@ -9,6 +9,7 @@
 #include <string>
 
 #include <dspace/maps/MapWork.h>
+#include <dspace/state/WorkThread.h>
 
 namespace dspace::session {
 
@@ -28,7 +29,7 @@ public:
   };
   struct Status {
     bool complete = false;
-    MapProgress progress;
+    WorkThread::Progress progress;
     Shape shape;
   };
 

@@ -286,9 +286,14 @@ void FindBodies(const Context& context, const v1::IlluminationMap& command,
           "the number of steps", span / command.step_s(), "up to 10,000,000");
   const KernelSet& kernels = *context.scene->sky.kernels;
   const Ephemeris& ephemeris = kernels.GetEphemeris();
+  const std::string label = "file '" + command.horizon_path() + "'";
   const int body =
-      BodyFor(kernels, horizons.GetCrs(), command.body(), "file '" + command.horizon_path() + "'",
-              [&](const std::string& warning) { context.reply.add_warning(warning); });
+      BodyFor(kernels, horizons.GetCrs(), command.body(), label, [&](const std::string&) {
+        const int own = *FindBody(kernels, horizons.GetCrs());
+        Reject(label, "it is a horizon map of body '" + ephemeris.Names().NameOf(own) +
+                          "', and the command names '" + command.body() +
+                          "'; accepted: the body of its ground, or none");
+      });
   std::vector<double> times;
   const std::int64_t steps = StepsBefore(command.start_s(), command.end_s(), command.step_s());
   for (std::int64_t i = 0; i < steps; ++i) {

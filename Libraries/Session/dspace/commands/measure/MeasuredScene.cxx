@@ -3,10 +3,10 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include <dspace/Checks.h>
 #include <dspace/messages/Convert.h>
-#include <dspace/messages/Deadline.h>
 
 namespace dspace::session {
 namespace {
@@ -51,7 +51,11 @@ Methods MethodsOf(const v1::Measuring& measuring, const std::string& command) {
 MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measuring,
                              const google::protobuf::RepeatedField<std::uint32_t>& without,
                              const std::string& command, RayTrees* trees)
-    : Context_(context) {
+    : Context_(context),
+      Deadline_(measuring.has_deadline_s() ? std::optional<double>(measuring.deadline_s())
+                                           : std::nullopt,
+                command, "fewer lines or azimuths"),
+      Wait_(measuring.has_wait_s() ? std::optional<double>(measuring.wait_s()) : std::nullopt) {
   Scene& scene = context.GetScene();
   std::set<std::string> hidden;
   for (const std::string& name : measuring.hidden_fragment()) {
@@ -62,8 +66,7 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
     left.insert(scene.Object(id).id);
   }
   if (measuring.has_deadline_s()) {
-    const Deadline deadline(measuring.deadline_s(), command, "fewer lines or azimuths");
-    this->Obstacles_.SetCheck([deadline] { deadline.Check(); });
+    this->Obstacles_.SetCheck([deadline = this->Deadline_] { deadline.Check(); });
   }
   if (trees) {
     trees->Begin();
@@ -78,13 +81,24 @@ MeasuredScene::MeasuredScene(const Context& context, const v1::Measuring& measur
     if (const TerrainObject* terrain = context.scene->TerrainOf(id)) {
       if (!measuring.no_terrain()) {
         this->Ids_.insert(id);
-        this->Obstacles_.Add(Obstacles::Ground{terrain->Name(), &terrain->Surface(),
+        this->Obstacles_.Add(Obstacles::Ground{terrain->Name(), terrain->HeldSurface(),
                                                context.Frames().WorldPose(object.frame), id});
       }
     } else if (!measuring.no_objects()) {
       this->AddObject(context, object, trees);
     }
   }
+}
+
+void MeasuredScene::Measure(Measurement measure) const {
+  this->Context_.state.works->Run(this->Context_.reply,
+                                  {this->Wait_, this->Deadline_, this->Context_.scene->sky.kernels},
+                                  [obstacles = this->Obstacles_, measure = std::move(measure)](
+                                      v1::Reply& reply, const Works::Proceed& proceed) {
+                                    Obstacles own = obstacles;
+                                    own.SetCheck([&] { proceed(0.0); });
+                                    measure(own, reply, proceed);
+                                  });
 }
 
 std::vector<MeasuredScene::ShownPart>
@@ -183,7 +197,7 @@ std::pair<const TerrainSurface*, Pose> MeasuredScene::GroundOf(const Spot& spot)
   }
   for (const Obstacles::Ground& ground : this->Obstacles_.Grounds()) {
     if (ground.surface->Sample(ground.X_RS.Inverse().Apply(spot.p_R)).valid) {
-      return {ground.surface, ground.X_RS};
+      return {ground.surface.get(), ground.X_RS};
     }
   }
   return {nullptr, Pose()};

@@ -3,6 +3,7 @@
 #define DSPACE_SESSION_MEASURED_SCENE_H
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -17,10 +18,12 @@
 #include <dspace/measure/HorizonScan.h>
 #include <dspace/measure/Obstacles.h>
 #include <dspace/proto/sights.pb.h>
+#include <dspace/state/Works.h>
 
 namespace dspace::session {
 
-// Of the scene at its present time. The scene must not change while this exists.
+// Of the scene at its present time. The scene must not change while this exists; a Measurement may
+// outlive both.
 class MeasuredScene {
 public:
   // A place with the words that name it in errors.
@@ -49,6 +52,13 @@ public:
   static std::vector<ShownPart> PartsOf(const Context& context, const GraphicsObject& object,
                                         bool* any = nullptr);
 
+  // What is computed against obstacles, which end it by an exception in one of their checks, and
+  // where that is written. Holds nothing of the scene or of this.
+  using Measurement =
+      std::function<void(const Obstacles&, v1::Reply& reply, const Works::Proceed& proceed)>;
+  // Measures in this thread, or with `wait_s` in one of its own (Works).
+  void Measure(Measurement measure) const;
+
   bool IsObstacle(ObjectId object) const { return this->Ids_.count(object) != 0; } // a terrain too
   const Obstacles& Get() const { return this->Obstacles_; }
   // Throws Error: NotFound for an unknown frame or terrain, InvalidArgument for a position or a
@@ -69,6 +79,8 @@ private:
   void AddObject(const Context& context, const GraphicsObject& object, RayTrees* trees);
 
   const Context& Context_;
+  Deadline Deadline_;
+  std::optional<double> Wait_; // [s]
   Obstacles Obstacles_;
   std::set<ObjectId> Ids_; // of the obstacles
 };

@@ -269,6 +269,9 @@ void ScanRanges(const Context& context, v1::ScanRanges& command, RayTrees& trees
   if (MethodsOf(command.measuring(), name).image) {
     Reject(name, "the method is one of pictures; accepted: EXACT");
   }
+  if (command.measuring().has_wait_s()) {
+    Reject(name, "it has wait_s; accepted: none, since a sensor's beams are measured at once");
+  }
   const RangeSensor sensor(SettingsOf(command.sensor()));
   const double terrainAlbedo =
       command.sensor().has_terrain_albedo() ? command.sensor().terrain_albedo() : StandardAlbedo;

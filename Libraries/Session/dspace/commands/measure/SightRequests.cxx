@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/measure/MeasuredPictures.h>
@@ -55,11 +58,15 @@ void PutClearance(const SightLine& line, v1::LineOfSightReply::Sight& sight) {
   sight.set_clearance_deg(angle_deg);
 }
 
+struct Wanted {
+  bool clearance = true;
+  std::optional<double> wavelength; // [m]
+};
+
 // What rays find of one line.
-void PutExact(const MeasuredScene& scene, const v1::LineOfSight& command,
-              const MeasuredScene::Spot& from, const MeasuredScene::Spot& to,
-              v1::LineOfSightReply::Sight& sight) {
-  const SightLine line(scene.Get(), from.p_R, to.p_R, from.label, to.label);
+void PutExact(const Obstacles& obstacles, const Wanted& wanted, const MeasuredScene::Spot& from,
+              const MeasuredScene::Spot& to, v1::LineOfSightReply::Sight& sight) {
+  const SightLine line(obstacles, from.p_R, to.p_R, from.label, to.label);
   const Obstacles::Hit& first = line.First();
   sight.set_clear(!first.hit);
   sight.set_terrain(first.terrain);
@@ -68,11 +75,11 @@ void PutExact(const MeasuredScene& scene, const v1::LineOfSight& command,
   if (first.hit) {
     Put(first.point, sight.mutable_point());
   }
-  if (!command.no_clearance()) {
+  if (wanted.clearance) {
     PutClearance(line, sight);
   }
-  if (command.has_wavelength()) {
-    const double free = line.Fresnel(command.wavelength());
+  if (wanted.wavelength) {
+    const double free = line.Fresnel(*wanted.wavelength);
     sight.set_fresnel_free(first.object != 0 ? std::min(free, 0.0) : free);
   }
 }
@@ -111,33 +118,50 @@ void FindSights(const Context& context, v1::LineOfSight& command) {
     Reject(name, std::to_string(command.pair_size()) + " lines; accepted: 1 to 1,000,000");
   }
   const MeasuredScene scene(context, command.measuring(), command.without_object(), name);
-  std::optional<MeasuredPictures> pictures;
-  v1::LineOfSightReply reply;
-  if (methods.image) {
-    pictures.emplace(context, command.measuring(), scene, name);
-    reply.set_image_pixel_deg(pictures->PixelAngle());
-  }
+  struct Line {
+    MeasuredScene::Spot from, to;
+  };
+  std::vector<Line> lines;
+  auto sights = std::make_shared<v1::LineOfSightReply>();
   for (int i = 0; i < command.pair_size(); ++i) {
     const std::string number = std::to_string(i);
-    const MeasuredScene::Spot from = StartOf(scene, command.pair(i), number);
-    const MeasuredScene::Spot to = EndOf(scene, command.pair(i), number);
-    if ((to.p_R - from.p_R).norm() <= 2.0 * Obstacles::Touch) {
-      Reject("line " + number, "its start and its end are the same point, " + VectorText(from.p_R) +
+    const Line& line = lines.emplace_back(
+        Line{StartOf(scene, command.pair(i), number), EndOf(scene, command.pair(i), number)});
+    const Eigen::Vector3d way = line.to.p_R - line.from.p_R;
+    if (way.norm() <= 2.0 * Obstacles::Touch) {
+      Reject("line " + number, "its start and its end are the same point, " +
+                                   VectorText(line.from.p_R) +
                                    " in the root; accepted: two points that differ");
     }
-    v1::LineOfSightReply::Sight* sight = reply.add_sight();
-    sight->set_range((to.p_R - from.p_R).norm());
+    v1::LineOfSightReply::Sight* sight = sights->add_sight();
+    sight->set_range(way.norm());
     sight->set_clearance(std::numeric_limits<double>::quiet_NaN());
     sight->set_clearance_deg(std::numeric_limits<double>::quiet_NaN());
-    if (methods.exact) {
-      PutExact(scene, command, from, to, *sight);
-    }
-    if (pictures) {
+  }
+  if (methods.image) {
+    MeasuredPictures pictures(context, command.measuring(), scene, name);
+    sights->set_image_pixel_deg(pictures.PixelAngle());
+    for (int i = 0; i < command.pair_size(); ++i) {
       scene.Get().Check();
-      PutImage(*pictures, scene, from, to, !methods.exact, *sight);
+      const Line& line = lines[std::size_t(i)];
+      PutImage(pictures, scene, line.from, line.to, !methods.exact, *sights->mutable_sight(i));
     }
   }
-  context.reply.mutable_line_of_sight()->Swap(&reply);
+  if (!methods.exact) {
+    context.reply.mutable_line_of_sight()->Swap(sights.get());
+    return;
+  }
+  const Wanted wanted{!command.no_clearance(), command.has_wavelength()
+                                                   ? std::optional<double>(command.wavelength())
+                                                   : std::nullopt};
+  scene.Measure([lines = std::move(lines), sights, wanted](
+                    const Obstacles& obstacles, v1::Reply& reply, const Works::Proceed& proceed) {
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      proceed(double(i) / double(lines.size()));
+      PutExact(obstacles, wanted, lines[i].from, lines[i].to, *sights->mutable_sight(int(i)));
+    }
+    reply.mutable_line_of_sight()->Swap(sights.get());
+  });
 }
 
 void FindHorizon(const Context& context, v1::Horizon& command) {
@@ -158,33 +182,40 @@ void FindHorizon(const Context& context, v1::Horizon& command) {
   constexpr std::size_t Standard = 1440;
   const std::size_t count = command.azimuths() == 0 ? Standard : command.azimuths();
   const LevelAxes axes = scene.AxesAt(spot);
-  v1::HorizonReply reply;
-  if (methods.exact) {
-    for (const HorizonPoint& point : ScanHorizon(scene.Get(), spot.p_R, axes, count, spot.label)) {
-      reply.add_elevation_deg(point.elevation_deg);
-      reply.add_distance(point.distance);
-      reply.mutable_point()->Add(point.point.data(), point.point.data() + 3);
-      reply.add_object(point.object);
-    }
-  }
+  auto horizon = std::make_shared<v1::HorizonReply>();
   if (methods.image) {
     MeasuredPictures pictures(context, command.measuring(), scene, name);
     const MeasuredPictures::Skyline seen = pictures.Horizon(Lifted(scene, spot), axes, count);
-    reply.mutable_image_elevation_deg()->Add(seen.elevation_deg.begin(), seen.elevation_deg.end());
-    reply.mutable_image_distance()->Add(seen.distance.begin(), seen.distance.end());
+    horizon->mutable_image_elevation_deg()->Add(seen.elevation_deg.begin(),
+                                                seen.elevation_deg.end());
+    horizon->mutable_image_distance()->Add(seen.distance.begin(), seen.distance.end());
     for (const Eigen::Vector3d& point : seen.point) {
-      reply.mutable_image_point()->Add(point.data(), point.data() + 3);
+      horizon->mutable_image_point()->Add(point.data(), point.data() + 3);
     }
     for (const Pose& camera : seen.cameras) {
-      Put(camera, reply.add_image_camera());
+      Put(camera, horizon->add_image_camera());
     }
-    reply.set_image_pixel_deg(pictures.PixelAngle());
+    horizon->set_image_pixel_deg(pictures.PixelAngle());
   }
-  Put(spot.p_R, reply.mutable_from());
+  Put(spot.p_R, horizon->mutable_from());
   if (const std::optional<double> north = scene.NorthAt(spot)) {
-    reply.set_first_deg(*north);
+    horizon->set_first_deg(*north);
   }
-  context.reply.mutable_horizon()->Swap(&reply);
+  if (!methods.exact) {
+    context.reply.mutable_horizon()->Swap(horizon.get());
+    return;
+  }
+  scene.Measure([spot, axes, count, horizon](const Obstacles& obstacles, v1::Reply& reply,
+                                             const Works::Proceed& proceed) {
+    for (const HorizonPoint& point :
+         ScanHorizon(obstacles, spot.p_R, axes, count, spot.label, proceed)) {
+      horizon->add_elevation_deg(point.elevation_deg);
+      horizon->add_distance(point.distance);
+      horizon->mutable_point()->Add(point.point.data(), point.point.data() + 3);
+      horizon->add_object(point.object);
+    }
+    reply.mutable_horizon()->Swap(horizon.get());
+  });
 }
 
 } // namespace

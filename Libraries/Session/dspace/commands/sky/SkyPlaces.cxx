@@ -69,10 +69,10 @@ dspace::SkyPlace PlaceOnFrame(const Context& context, const v1::Place& place) {
   return SkyPlaceOf(*sky.kernels, sky.PlaceOf(tree, above), X);
 }
 
-// One frame of a chain: at rest, or along a trajectory.
+// One frame of a chain: at rest, or along a trajectory, as it is now.
 struct Link {
   Pose pose;
-  const TrajectoryObject* trajectory = nullptr;
+  std::shared_ptr<const TrajectoryObject> trajectory;
   std::string label;
 };
 
@@ -121,7 +121,7 @@ TimedPlace TimedPlaceOnFrame(const Context& context, const v1::Place& place) {
     Link link{tree.LocalPose(frame), nullptr, "frame '" + tree.Path(frame) + "'"};
     for (const auto& [id, trajectory] : context.scene->trajectories) {
       if (trajectory->Follower() == frame) {
-        link.trajectory = trajectory.get();
+        link.trajectory = std::make_shared<const TrajectoryObject>(*trajectory);
         moves = true;
       }
     }

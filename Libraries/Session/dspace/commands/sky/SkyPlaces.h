@@ -19,8 +19,8 @@ namespace dspace::session {
 dspace::SkyPlace PlaceUnderSky(const Context& context, const v1::SkyPlace& asked,
                                const std::string& command);
 
-// A place at each time: frames that follow the time, and those that move along trajectories, do so
-// from `context`'s scene, which must outlive it.
+// A place at each time: frames follow the time, and move along trajectories, as they do in the
+// scene now. It holds what it needs of the scene; any thread may call it.
 struct TimedPlace {
   std::function<dspace::SkyPlace(double tdb)> at;
   bool moves = false; // over its body's axes, along a trajectory

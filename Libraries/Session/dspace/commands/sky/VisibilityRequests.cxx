@@ -1,6 +1,8 @@
 // Contacts and power over a span of time.
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <dspace/Checks.h>
 #include <dspace/commands/objects/TrajectoryMessages.h>
@@ -10,6 +12,7 @@
 #include <dspace/messages/Convert.h>
 #include <dspace/messages/Deadline.h>
 #include <dspace/scene/Light.h>
+#include <dspace/state/Works.h>
 #include <dspace/visibility/Contacts.h>
 #include <dspace/visibility/PowerProfile.h>
 
@@ -27,8 +30,8 @@ HorizonLine LineOf(const v1::HorizonMask& mask) {
 }
 
 // A point on a path about a body.
-dspace::ContactTarget CraftOf(const KernelSet& kernels, v1::ContactTarget& asked,
-                              const std::string& label) {
+dspace::ContactTarget CraftOf(const std::shared_ptr<const KernelSet>& kernels,
+                              v1::ContactTarget& asked, const std::string& label) {
   const TrajectorySource source = ToSource(*asked.mutable_path(), label);
   const std::string& center = asked.body().empty() ? source.center : asked.body();
   if (center.empty()) {
@@ -39,14 +42,14 @@ dspace::ContactTarget CraftOf(const KernelSet& kernels, v1::ContactTarget& asked
                             : !source.frame.empty() ? source.frame
                                                     : "J2000";
   dspace::CelestialPlace place;
-  place.body = kernels.GetEphemeris().Names().IdOf(center);
-  place.axes = kernels.GetFrames().Table().Get(axes).name;
+  place.body = kernels->GetEphemeris().Names().IdOf(center);
+  place.axes = kernels->GetFrames().Table().Get(axes).name;
   dspace::ContactTarget target;
   target.body = place.body;
-  target.point = [place, path = source.path, label, &kernels](double tdb) {
+  target.point = [place, path = source.path, label, kernels](double tdb) {
     Pose X;
     X.position = PositionAt(*path, tdb, label);
-    return SkyPlaceOf(kernels, place, X);
+    return SkyPlaceOf(*kernels, place, X);
   };
   return target;
 }
@@ -63,7 +66,7 @@ dspace::ContactTarget TargetOf(const Context& context, v1::ContactTarget& asked,
     Reject(label, "it has axes '" + asked.axes() + "' and no path; accepted: axes of a path");
   }
   if (asked.has_path()) {
-    return CraftOf(*sky.kernels, asked, label);
+    return CraftOf(sky.kernels, asked, label);
   }
   dspace::ContactTarget target;
   if (asked.has_at()) {
@@ -86,6 +89,16 @@ dspace::ContactTarget TargetOf(const Context& context, v1::ContactTarget& asked,
   return target;
 }
 
+template<class Message>
+void RunWork(const Context& context, const Message& command, const Deadline& deadline,
+             Works::Compute compute) {
+  context.state.works->Run(
+      context.reply,
+      {command.has_wait_s() ? std::optional<double>(command.wait_s()) : std::nullopt, deadline,
+       context.scene->sky.kernels},
+      std::move(compute));
+}
+
 template<class Message> Deadline DeadlineOf(const Message& command, const std::string& name) {
   return {command.has_deadline_s() ? std::optional<double>(command.deadline_s()) : std::nullopt,
           name, "fewer steps"};
@@ -93,7 +106,7 @@ template<class Message> Deadline DeadlineOf(const Message& command, const std::s
 
 void TrackSky(const Context& context, v1::TrackSky& command) {
   const std::string name = "command track_sky";
-  const KernelSet& kernels = *context.scene->sky.kernels;
+  const std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
   const TimedPlace place = TimedPlaceUnderSky(context, command.place(), name);
   const dspace::ContactTarget target =
       TargetOf(context, *command.mutable_target(), name + ", its target");
@@ -103,18 +116,24 @@ void TrackSky(const Context& context, v1::TrackSky& command) {
   if (command.time_s().empty()) {
     command.add_time_s(context.GetScene().Time());
   }
-  const HorizonLine level;
-  v1::SkyTrackReply reply;
-  for (const double tdb : command.time_s()) {
-    FallbackScope::Begin(tdb);
-    const Sighted seen =
-        LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place.at(tdb), level, target, tdb);
-    reply.add_azimuth_deg(seen.direction.azimuth_deg);
-    reply.add_elevation_deg(seen.direction.elevation_deg);
-    reply.add_range(seen.range);
-    reply.add_time_s(tdb);
-  }
-  context.reply.mutable_sky_track()->Swap(&reply);
+  const std::vector<double> times(command.time_s().begin(), command.time_s().end());
+  const Deadline none({}, name, "");
+  RunWork(context, command, none, [=](v1::Reply& reply, const Works::Proceed& proceed) {
+    v1::SkyTrackReply track;
+    const HorizonLine level;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double tdb = times[i];
+      proceed(double(i) / double(times.size()));
+      FallbackScope::Begin(tdb);
+      const Sighted seen = LookOver(kernels->GetEphemeris(), kernels->GetFrames(), place.at(tdb),
+                                    level, target, tdb);
+      track.add_azimuth_deg(seen.direction.azimuth_deg);
+      track.add_elevation_deg(seen.direction.elevation_deg);
+      track.add_range(seen.range);
+      track.add_time_s(tdb);
+    }
+    reply.mutable_sky_track()->Swap(&track);
+  });
 }
 
 void Put(double time, const Sighted& seen, v1::ContactsReply::Moment* moment) {
@@ -126,7 +145,7 @@ void Put(double time, const Sighted& seen, v1::ContactsReply::Moment* moment) {
 
 void SearchContacts(const Context& context, v1::FindContacts& command) {
   const std::string name = "command find_contacts";
-  const KernelSet& kernels = *context.scene->sky.kernels;
+  const std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
   const TimedPlace place = TimedPlaceUnderSky(context, command.place(), name);
   if (command.target_size() < 1 || command.target_size() > MostTargets) {
     Reject(name, std::to_string(command.target_size()) + " targets; accepted: 1 to 1,000");
@@ -134,29 +153,41 @@ void SearchContacts(const Context& context, v1::FindContacts& command) {
   constexpr double Standard = 60.0; // [s]
   const double step = command.step_s() == 0.0 ? Standard : command.step_s();
   const HorizonLine horizon = LineOf(command.mask());
-  const Deadline deadline = DeadlineOf(command, name);
-  v1::ContactsReply reply;
+  const double start = command.start_s();
+  const double end = command.end_s();
+  RequireSpan(start, end, step);
+  struct Target {
+    dspace::ContactTarget target;
+    bool upper = false;
+  };
+  std::vector<Target> targets;
   for (int i = 0; i < command.target_size(); ++i) {
-    const dspace::ContactTarget target =
-        TargetOf(context, *command.mutable_target(i), name + ", target " + std::to_string(i));
-    const bool upper = command.target(i).upper();
-    const auto look = [&](double tdb) {
-      deadline.Check();
-      FallbackScope::Begin(tdb);
-      return LookOver(kernels.GetEphemeris(), kernels.GetFrames(), place.at(tdb), horizon, target,
-                      tdb, upper);
-    };
-    for (const Contact& found : FindContacts(look, command.start_s(), command.end_s(), step)) {
-      v1::ContactsReply::Contact* contact = reply.add_contact();
-      contact->set_target(std::uint32_t(i));
-      Put(found.rise, found.atRise, contact->mutable_rise());
-      Put(found.set, found.atSet, contact->mutable_set());
-      Put(found.peak, found.atPeak, contact->mutable_peak());
-      contact->set_since_before(found.sinceBefore);
-      contact->set_until_after(found.untilAfter);
-    }
+    targets.push_back(
+        {TargetOf(context, *command.mutable_target(i), name + ", target " + std::to_string(i)),
+         command.target(i).upper()});
   }
-  context.reply.mutable_contacts()->Swap(&reply);
+  const Deadline deadline = DeadlineOf(command, name);
+  RunWork(context, command, deadline, [=](v1::Reply& reply, const Works::Proceed& proceed) {
+    v1::ContactsReply contacts;
+    for (std::size_t i = 0; i < targets.size(); ++i) {
+      const auto look = [&](double tdb) {
+        proceed((double(i) + (tdb - start) / (end - start)) / double(targets.size()));
+        FallbackScope::Begin(tdb);
+        return LookOver(kernels->GetEphemeris(), kernels->GetFrames(), place.at(tdb), horizon,
+                        targets[i].target, tdb, targets[i].upper);
+      };
+      for (const Contact& found : FindContacts(look, start, end, step)) {
+        v1::ContactsReply::Contact* contact = contacts.add_contact();
+        contact->set_target(std::uint32_t(i));
+        Put(found.rise, found.atRise, contact->mutable_rise());
+        Put(found.set, found.atSet, contact->mutable_set());
+        Put(found.peak, found.atPeak, contact->mutable_peak());
+        contact->set_since_before(found.sinceBefore);
+        contact->set_until_after(found.untilAfter);
+      }
+    }
+    reply.mutable_contacts()->Swap(&contacts);
+  });
 }
 
 SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& label) {
@@ -194,9 +225,29 @@ SolarPanel PanelOf(const v1::ProfilePower::Panel& asked, const std::string& labe
   return panel;
 }
 
+void Put(const PowerProfile& profile, bool battery, v1::PowerProfileReply& reply) {
+  for (const PowerSample& sample : profile.samples) {
+    reply.add_time_s(sample.time);
+    reply.add_sun_azimuth_deg(sample.sun.azimuth_deg);
+    reply.add_sun_elevation_deg(sample.sun.elevation_deg);
+    reply.add_lit(sample.lit);
+    reply.add_power(sample.power);
+    if (battery) {
+      reply.add_charge(sample.charge);
+    }
+  }
+  reply.set_lit_share(profile.litShare);
+  reply.set_energy(profile.energy);
+  reply.set_longest_night_s(profile.longestNight);
+  reply.set_night_start_s(profile.nightStart);
+  reply.set_least_charge(profile.leastCharge);
+  reply.set_empty_s(profile.empty);
+  reply.set_missing(profile.missing);
+}
+
 void ProfilePowerOf(const Context& context, v1::ProfilePower& command) {
   const std::string name = "command profile_power";
-  const KernelSet& kernels = *context.scene->sky.kernels;
+  const std::shared_ptr<const KernelSet> kernels = context.scene->sky.kernels;
   const TimedPlace timed = TimedPlaceUnderSky(context, command.place(), name);
   if (timed.moves) {
     Reject(name, "its place moves along a trajectory; accepted: a place that rests on its body");
@@ -219,30 +270,18 @@ void ProfilePowerOf(const Context& context, v1::ProfilePower& command) {
     battery->charging = asked.has_charging() ? asked.charging() : 1.0;
   }
   constexpr double Standard = 3600.0; // [s]
+  const double start = command.start_s();
+  const double end = command.end_s();
+  const double step = command.step_s() == 0.0 ? Standard : command.step_s();
+  const HorizonLine horizon = LineOf(command.mask());
   const Deadline deadline = DeadlineOf(command, name);
-  const PowerProfile profile = ProfilePower(
-      kernels.GetEphemeris(), kernels.GetFrames(), place, LineOf(command.mask()), panels, battery,
-      SolarConstant, command.start_s(), command.end_s(),
-      command.step_s() == 0.0 ? Standard : command.step_s(), [&] { deadline.Check(); });
-  v1::PowerProfileReply reply;
-  for (const PowerSample& sample : profile.samples) {
-    reply.add_time_s(sample.time);
-    reply.add_sun_azimuth_deg(sample.sun.azimuth_deg);
-    reply.add_sun_elevation_deg(sample.sun.elevation_deg);
-    reply.add_lit(sample.lit);
-    reply.add_power(sample.power);
-    if (battery) {
-      reply.add_charge(sample.charge);
-    }
-  }
-  reply.set_lit_share(profile.litShare);
-  reply.set_energy(profile.energy);
-  reply.set_longest_night_s(profile.longestNight);
-  reply.set_night_start_s(profile.nightStart);
-  reply.set_least_charge(profile.leastCharge);
-  reply.set_empty_s(profile.empty);
-  reply.set_missing(profile.missing);
-  context.reply.mutable_power_profile()->Swap(&reply);
+  RunWork(context, command, deadline, [=](v1::Reply& reply, const Works::Proceed& proceed) {
+    const PowerProfile profile =
+        ProfilePower(kernels->GetEphemeris(), kernels->GetFrames(), place, horizon, panels, battery,
+                     SolarConstant, start, end, step,
+                     [&](double tdb) { proceed((tdb - start) / (end - start)); });
+    Put(profile, battery.has_value(), *reply.mutable_power_profile());
+  });
 }
 
 } // namespace

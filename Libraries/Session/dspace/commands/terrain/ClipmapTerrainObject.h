@@ -33,6 +33,7 @@ public:
   void DescribeLayers(v1::TerrainLayerList& list) const;
   bool OnBody() const override { return this->Surface_->Placement().OnBody(); }
   const StreamedTerrain& Surface() const override { return *this->Surface_; }
+  std::shared_ptr<const TerrainSurface> HeldSurface() const override { return this->Surface_; }
   std::shared_ptr<const StreamedTerrain> SharedSurface() const { return this->Surface_; }
   // The command that set its own style; null: none.
   const v1::StyleTerrain* StyleCommand() const {

@@ -20,6 +20,7 @@ public:
               std::shared_ptr<const Material> material, std::size_t triangleBudget);
 
   const GridTerrain& Surface() const override { return *this->Grid_; }
+  std::shared_ptr<const TerrainSurface> HeldSurface() const override { return this->Grid_; }
   const GridTerrain& Undisturbed() const override { return this->Grid_->Undisturbed(); }
   TrackedGround& Ground() override { return *this->Grid_; }
   bool FollowTracks() override;
