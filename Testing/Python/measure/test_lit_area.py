@@ -70,3 +70,17 @@ def test_what_is_rejected(scene, tmp_path):
     with pytest.raises(dspace.NotFound, match="part 'cells'"):
         scene.lit_area([box, flat], parts="cells")
     assert scene.lit_area(box).lit_area > 1
+
+
+def test_what_is_below_the_ground_is_told(scene, tmp_path):
+    """A wall of 2 m by 4 m that faces the Sun, with 1 m of its 4 m below level ground."""
+    ground = scene.add_terrain(write_raster(tmp_path / "level.tif", np.zeros((41, 41), np.float32), 1.0), name="level")
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack(((0, 1, 0), (0, 0, 1), (1, 0, 0)))
+    pose[:3, 3] = ground.from_map([20.0, 20.0, 1.0])
+    wall = scene.add_plane(2.0, 4.0, name="wall", frame=scene.add_frame("wall", pose=pose))
+    sun = dict(direction=(1.0, 0.0, 0.0), radius_deg=0.0)
+    with pytest.warns(dspace.DspaceWarning, match="object 'wall': 2[45].* % of its area face the Sun and are below the ground"):
+        lit = scene.lit_area(wall, sun=sun)
+    assert lit.area == pytest.approx(8.0) and lit.lit_area == pytest.approx(6.0, abs=0.05)
+    assert scene.lit_area(wall, sun=sun, terrain=False).lit_area == pytest.approx(8.0)  # and no warning, which would be an error

@@ -34,6 +34,7 @@ public:
     }
   }
 
+  bool IsBuried() const { return this->Buried_; }
   bool IsFree(const Eigen::Vector3d& direction_R) const {
     if (this->Buried_) {
       return false;
@@ -102,6 +103,7 @@ void AddPiece(const Obstacles& obstacles, const DiscRays& rays, const SunDisc& s
     return;
   }
   const Outlook outlook(obstacles, p_R);
+  sum.buried += outlook.IsBuried() ? area : 0.0;
   double lit = 0.0;
   double projected = 0.0;
   for (int i = 0; i < rays.Count(); ++i) {

@@ -26,6 +26,7 @@ struct LitArea {
   double area = 0.0;
   double lit = 0.0;       // each place's area times the part of the disc that it sees
   double projected = 0.0; // times the irradiance of a surface that faces the disc: the power
+  double buried = 0.0;    // of places that face the disc, and are below the ground
 };
 
 // Each face is cut into congruent triangles, some `samples` of all faces together in proportion to

@@ -98,7 +98,8 @@ def run_span(options, out, starts, ends):
         found = {**source_of(options, ground), "begin_s": begin, "end_s": finish, "step_s": step, "mask_deg": options.mask, "contacts": rows}
         names = [span_name(end_row(ground, "from", start, True), end_row(ground, "to", end, True)) for start, end in zip(starts, ends)]
         if out is not None:
-            write(out, found, rows or [dict.fromkeys(contact_row(None))], lambda figure: draw_span(figure, begin, finish, names, rows))
+            write(out, found, rows or [dict.fromkeys([*end_row(ground, "from", starts[0], True), *end_row(ground, "to", ends[0], True), *contact_row(None)])],
+                  lambda figure: draw_span(figure, begin, finish, names, rows))
     if options.json:
         sys.stdout.write(text_of(found))
         return

@@ -19,6 +19,7 @@ namespace dspace::session {
 namespace {
 
 constexpr int MostObjects = 10000;
+constexpr double BuriedShare = 0.01; // of an object's area, from which it is told
 
 std::string Quoted(const std::set<std::string>& names) {
   std::string text;
@@ -176,7 +177,11 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
     context.reply.mutable_lit_area()->Swap(areas.get());
     return;
   }
-  measured.Measure([faces = std::move(faces), lights, areas, samples, efficiency,
+  std::vector<std::string> names;
+  for (const ObjectId id : command.object()) {
+    names.push_back(scene.Object(id).name);
+  }
+  measured.Measure([names, faces = std::move(faces), lights, areas, samples, efficiency,
                     bothSides = command.both_sides()](const Obstacles& obstacles, v1::Reply& reply,
                                                       const Works::Proceed& proceed) {
     for (std::size_t i = 0; i < faces.size(); ++i) {
@@ -184,6 +189,12 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
       const Lit& light = lights[i];
       v1::LitAreaReply::Surface* surface = areas->mutable_surface(int(i));
       const LitArea lit = MeasureLitArea(obstacles, light.sun, faces[i], bothSides, samples);
+      if (lit.buried > BuriedShare * lit.area) {
+        reply.add_warning("object '" + names[i] +
+                          "': " + NumberText(100.0 * lit.buried / lit.area) +
+                          " % of its area face the Sun and are below the ground, where they are "
+                          "dark");
+      }
       surface->set_area(lit.area);
       surface->set_lit_area(lit.lit * light.left);
       surface->set_projected_area(lit.projected * light.left);
