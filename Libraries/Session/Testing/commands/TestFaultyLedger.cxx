@@ -108,7 +108,7 @@ TEST_F(FaultyLedger, CostsARecordingNoCommand) {
             std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(this->Folder + "/b.dspace"));
   Execute(*session, Remove("one"));                      // then all is known again
-  EXPECT_EQ(session->GetLedger().Commands().size(), 2u); // the other scene, and its time
+  EXPECT_EQ(session->GetLedger().Commands().size(), 3u); // the other scene, its first time, and now
   EXPECT_EQ(session->Record(this->Folder + "/b.dspace", 0.1), "");
 }
 

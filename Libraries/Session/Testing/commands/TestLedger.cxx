@@ -170,10 +170,11 @@ TEST_F(LedgerTest, WhatIsSupersededIsForgotten) {
     this->Accept(gone);
   }
   const std::vector<v1::Command> commands = this->Ledger_.Commands();
-  ASSERT_EQ(commands.size(), 4u); // the scene, its time, the frame, its pose
-  EXPECT_EQ(commands[1].set_time().time_s(), 999.0);
-  EXPECT_EQ(commands[2].create_frame().id(), frame);
-  EXPECT_EQ(commands[3].set_poses().pose(0), 999.0);
+  ASSERT_EQ(commands.size(), 5u); // the scene, its first time and its time, the frame, its pose
+  EXPECT_EQ(commands[1].set_time().time_s(), 0.0);
+  EXPECT_EQ(commands[2].set_time().time_s(), 999.0);
+  EXPECT_EQ(commands[3].create_frame().id(), frame);
+  EXPECT_EQ(commands[4].set_poses().pose(0), 999.0);
   this->ExpectRebuilt("after a thousand steps");
 }
 
@@ -181,6 +182,25 @@ TEST_F(LedgerTest, UnknownCommandsStay) {
   v1::Command unknown; // none, as one of a later version looks
   this->Ledger_.Add(unknown, {});
   EXPECT_EQ(this->Ledger_.Commands().size(), 2u);
+}
+
+TEST_F(LedgerTest, TheBeginningOfTheSceneIsKept) {
+  const auto begin = [](session::Interpreter& interpreter) {
+    return interpreter.GetState().scenes.begin()->second.begin_s;
+  };
+  EXPECT_FALSE(begin(this->Interpreter_).has_value());
+  for (const double time_s : {700.0, 702.0, 705.0}) {
+    v1::Command time;
+    time.mutable_set_time()->set_time_s(time_s);
+    this->Accept(time);
+  }
+  session::Interpreter late; // of a viewer that comes now
+  for (v1::Command command : this->Ledger_.Commands()) {
+    ASSERT_FALSE(late.Execute(command).has_error());
+  }
+  EXPECT_EQ(begin(this->Interpreter_), 700.0);
+  EXPECT_EQ(begin(late), 700.0);
+  EXPECT_EQ(late.GetState().scenes.begin()->second.scene->Time(), 705.0);
 }
 
 } // namespace

@@ -46,6 +46,7 @@ bool LedgerNames::Add(const v1::Command& command, const v1::Reply& reply) {
   switch (command.command_case()) {
   case C::kSetTime:
     this->Time_ = command.set_time().time_s();
+    this->Begin_ = std::min(this->Begin_.value_or(*this->Time_), *this->Time_);
     this->Lags_.clear();
     for (const v1::CameraLag& lag : reply.time().lag()) {
       this->Lags_[{lag.vantage(), lag.camera()}] = lag;
@@ -174,6 +175,9 @@ std::vector<std::string> LedgerNames::Fragments() const {
 
 void LedgerNames::PutFirst(const std::string& scene, Emit out) const {
   *NewCommand(scene, out).mutable_create_scene() = this->Create_;
+  if (this->Begin_ && *this->Begin_ != *this->Time_) { // clocks count from it
+    NewCommand(scene, out).mutable_set_time()->set_time_s(*this->Begin_);
+  }
   if (this->Time_) {
     NewCommand(scene, out).mutable_set_time()->set_time_s(*this->Time_);
   }

@@ -53,6 +53,7 @@ private:
 
   v1::CreateScene Create_;
   std::optional<double> Time_;
+  std::optional<double> Begin_; // the least time that was set
   std::vector<Fragment> Fragments_;
   std::vector<Light> Lights_;
   std::vector<Vantage> Vantages_;

@@ -33,6 +33,12 @@ void SceneTimeSource::SetEvents(Events_t events) {
   this->NextEvents_ = std::move(events);
 }
 
+void SceneTimeSource::SetBegin(std::function<std::optional<double>()> begin) {
+  this->Begin_ = std::move(begin);
+  this->State_.range.reset();
+  this->Advance(0.0);
+}
+
 void SceneTimeSource::Advance(double) {
   if (const std::shared_ptr<Scene> scene = this->Scene_()) {
     const double time_s = scene->Time();
@@ -41,6 +47,14 @@ void SceneTimeSource::Advance(double) {
     std::optional<TimeRange>& range = this->State_.range;
     range = range ? TimeRange{std::min(range->begin, time_s), std::max(range->end, time_s)}
                   : TimeRange{time_s, time_s};
+    if (this->Begin_) { // a time before the first one that was set is none
+      const std::optional<double> begin_s = this->Begin_();
+      if (!begin_s) {
+        range = TimeRange{time_s, time_s};
+      } else if (*begin_s != range->begin) {
+        range = TimeRange{*begin_s, *begin_s <= range->begin ? range->end : time_s};
+      }
+    }
   }
   if (this->NextEvents_) {
     if (const auto events = this->NextEvents_()) {
@@ -72,6 +86,11 @@ std::unique_ptr<SceneTimeSource> MakeTimeSource(vtkDspaceSession* session, const
   const vtkSmartPointer<vtkDspaceSession> kept = session;
   auto source = std::make_unique<SceneTimeSource>(
       [kept, scene] { return kept->GetInterpreter().FindScene(scene); }, j2000);
+  source->SetBegin([kept, scene] {
+    const auto& scenes = kept->GetInterpreter().GetState().scenes;
+    const auto found = scenes.find(scene);
+    return found == scenes.end() ? std::optional<double>() : found->second.begin_s;
+  });
   source->SetEvents([kept, scene, last = std::make_shared<std::uint64_t>(0)] {
     auto& scenes = kept->GetInterpreter().GetState().scenes;
     const auto found = scenes.find(scene);

@@ -12,8 +12,9 @@ class vtkDspaceSession;
 
 namespace dspace::widgets {
 
-// Shows the time that a simulation sets. The range is from the least to the greatest time since it
-// was made. It can ask nothing of the simulation: requests throw Error(Unsupported).
+// Shows the time that a simulation sets. The range is from the scene's beginning to the greatest
+// time since the source was made. It can ask nothing of the simulation: requests throw
+// Error(Unsupported).
 class SceneTimeSource : public TimeSource {
 public:
   // The scene is asked for at every Advance(); null: there is none.
@@ -22,6 +23,9 @@ public:
   // Asked for at every Advance(), returns null where nothing changed since the last call.
   using Events_t = std::function<std::unique_ptr<std::vector<TimelineEvent>>()>;
   void SetEvents(Events_t events);
+  // The least time that the scene was ever set to, from which all viewers count; none: not yet set.
+  // Without this function: the least time since the source was made.
+  void SetBegin(std::function<std::optional<double>()> begin);
 
   State GetState() const override { return this->State_; }
   const std::vector<TimelineEvent>& Events() const override { return this->Events_; }
@@ -38,6 +42,7 @@ public:
 private:
   std::function<std::shared_ptr<Scene>()> Scene_;
   Events_t NextEvents_;
+  std::function<std::optional<double>()> Begin_;
   State State_;
   std::vector<TimelineEvent> Events_;
   std::vector<TimeRange> Gaps_;
