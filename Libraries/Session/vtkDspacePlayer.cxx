@@ -71,6 +71,17 @@ struct vtkDspacePlayer::Internals {
     return *this->playback;
   }
 
+  // Throws where nothing is open, and for a step that is not there.
+  std::size_t StepOf(long long index) {
+    const std::size_t count = this->Open().Steps().size();
+    if (index < 0 || index >= static_cast<long long>(count)) {
+      throw dspace::Error(dspace::Error::Kind::InvalidArgument, "player",
+                          "the step is " + std::to_string(index) + "; accepted: 0 to " +
+                              std::to_string(count - 1));
+    }
+    return std::size_t(index);
+  }
+
   // A reply whose warnings are what the playback has to say.
   dspace::v1::Reply WithNotes() {
     dspace::v1::Reply reply;
@@ -228,17 +239,30 @@ std::string vtkDspacePlayer::CopyViewport(const std::string& viewport, const std
 
 std::string vtkDspacePlayer::Go(long long index) {
   return dspace::session::Catch([&] {
-           dspace::session::Playback& playback = this->Impl->Open();
-           const long long from = static_cast<long long>(playback.Index());
-           if (index < 0 || index >= static_cast<long long>(playback.Steps().size())) {
-             throw dspace::Error(dspace::Error::Kind::InvalidArgument, "player",
-                                 "the step is " + std::to_string(index) + "; accepted: 0 to " +
-                                     std::to_string(playback.Steps().size() - 1));
-           }
-           playback.Step(index - from);
+           const std::size_t step = this->Impl->StepOf(index);
+           dspace::session::Playback& playback = *this->Impl->playback;
+           playback.Step(static_cast<long long>(step) - static_cast<long long>(playback.Index()));
            return this->Impl->WithNotes();
          })
       .SerializeAsString();
+}
+
+std::string vtkDspacePlayer::BeginGo(long long index) {
+  return dspace::session::Catch([&] {
+           const std::size_t step = this->Impl->StepOf(index);
+           this->Impl->playback->Aim(step);
+           return dspace::v1::Reply();
+         })
+      .SerializeAsString();
+}
+
+int vtkDspacePlayer::ContinueGo(double seconds) {
+  bool there = false;
+  this->Impl->opened = dspace::session::Catch([&] {
+    there = this->Impl->Open().Continue(seconds);
+    return there ? this->Impl->WithNotes() : dspace::v1::Reply();
+  });
+  return this->Impl->opened.has_error() ? -1 : there ? 1 : 0;
 }
 
 long long vtkDspacePlayer::GetIndex() {

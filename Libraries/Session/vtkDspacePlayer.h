@@ -50,6 +50,11 @@ public:
 
   /// Moves to a step, from 0, and waits for it, also for the files that another thread reads.
   std::string Go(long long index);
+  /// The same without holding the thread: BeginGo takes a note of the step, and each ContinueGo
+  /// executes commands for about this time [s]: 0: not yet there, 1: it is there, or where a later
+  /// movement went, -1: it failed. TakeReply then returns the reply.
+  std::string BeginGo(long long index);
+  int ContinueGo(double seconds);
   /// The present step, and its time [s].
   long long GetIndex();
   double GetTime();

@@ -412,3 +412,46 @@ TEST_F(FileCommandsTest, TheThreadOfTheWindowsOpensNoModelAndNoRaster) {
       << errors.toStdString();
   EXPECT_EQ(opened.Below(below), std::vector<std::string>{below + "/nothing"});
 }
+
+TEST_F(FileCommandsTest, TheWindowLivesWhileAScriptSeeks) {
+  // Views of terrain would take the time of the turns of the event loop.
+  ASSERT_TRUE(Run("for each in list(app.views.values()): app.close_view(each)\n"));
+  const QString model = folder->filePath("sought.obj");
+  WriteLargeModel(model, 500);
+  const QString path = folder->filePath("sought.dspace");
+  ASSERT_TRUE(Record(path, {"scene.time = 0.25", "scene.time = 0.5",
+                            "scene.load(r'" + model + "', name='large')"}))
+      << errors.toStdString();
+  ASSERT_TRUE(Run("run = app.open(r'" + path + "')")) << errors.toStdString();
+  ASSERT_TRUE(Settled());
+  ASSERT_TRUE(Run("place = run.session.scenes['place']"));
+  EXPECT_EQ(Value("(run.time, 'large' in place.objects)"), "(0.25, False)");
+  bool cancels = true;
+  int ticks = 0;
+  // In every turn of the event loop, however long it takes.
+  QObject context;
+  std::function<void()> look = [&] {
+    if (Strips("Moving in sought.dspace")) {
+      ++ticks;
+      if (cancels) {
+        window->findChild<TaskStrip*>()->findChild<QToolButton*>()->click();
+      }
+    }
+    QTimer::singleShot(0, &context, look);
+  };
+  look();
+  // What is cancelled leaves the step before.
+  EXPECT_FALSE(Run("run.seek(0.6)"));
+  EXPECT_GE(ticks, 1);
+  EXPECT_NE(errors.indexOf("cancelled"), -1) << errors.toStdString();
+  EXPECT_TRUE(Wait([] { return Value("run._player.IsMoving()") == "False"; }));
+  EXPECT_EQ(Value("(run.time, 'large' in place.objects)"), "(0.25, False)");
+  cancels = false;
+  ticks = 0;
+  ASSERT_TRUE(Run("reached = run.seek(0.6)")) << errors.toStdString();
+  EXPECT_GE(ticks, 1);
+  EXPECT_EQ(Value("(reached, run.time, 'large' in place.objects)"), "(0.5, 0.5, True)");
+  EXPECT_TRUE(Wait([] { return !Strips("Moving in"); })); // labels go with the next events
+  ASSERT_TRUE(Settled());
+  ASSERT_TRUE(Run("run.close()"));
+}

@@ -7,7 +7,7 @@ from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
-from dspace.errors import Resource, Unsupported
+from dspace.errors import NotFound, Resource, Unsupported
 from dspace.links.watching import OWN
 from dspace.playback.playback import Playback
 
@@ -45,7 +45,8 @@ class PlayerClient(LocalClient):
 class Run(Playback):
     """A dspace.Playback whose time the timeline shows and moves; App.open() returns it.
 
-    seek() and step() wait for the step, play() and follow() return at once. Views and cameras whose names begin with
+    seek() and step() return at the step; the windows live meanwhile, and the status bar has a button that cancels it
+    (dspace.Resource, and the step before stays; also if the user moves the timeline). play() and follow() return at once. Views and cameras whose names begin with
     "viewer:" stay when it moves; other additions to its session are lost when it moves back. movie: its camera key
     frames, as dspace.application.key_frames.KeyFrames."""
 
@@ -85,7 +86,7 @@ class Run(Playback):
                 self._app._tasks.pop(task, None)
         reply = player.TakeReply()
         if state < 0 and not to_reply(reply).HasField("error"):
-            raise Resource("opening it was cancelled", self.file.label)
+            raise Resource(f"{self.file.label}: opening it was cancelled", self.file.label)
         require(reply)
 
     def _make_session(self):
@@ -94,7 +95,38 @@ class Run(Playback):
         return made
 
     def _go(self, index):
-        require(self._player.Go(index))
+        """In slices, between which the windows live."""
+        player, before = self._player, self.index
+        require(player.BeginGo(index))
+        task, cancelled = None, []
+        state = player.ContinueGo(PATIENCE)
+        try:
+            while state == 0:
+                if task is None:
+                    task = self._app._add_task(lambda: cancelled.append(True))
+                    self._host.task(task, f"Moving in {os.path.basename(self._path)}", -1.0, "Cancel")
+                if not self._host.breathe() or cancelled:
+                    raise Resource(f"{self.file.label}: the movement was cancelled", self.file.label)
+                state = player.ContinueGo(SLICE)
+            require(player.TakeReply())
+        except BaseException:
+            if not self._closed:
+                self._return_to(before)
+            raise
+        finally:
+            if task is not None:
+                self._host.task(task, "", 0.0, "")
+                self._app._tasks.pop(task, None)
+        if self.index != index:
+            raise Resource(f"{self.file.label}: the timeline was moved meanwhile", self.file.label)
+
+    def _return_to(self, index):
+        """Half of a way may be there: the timeline goes back to the complete step by itself."""
+        try:
+            require(self._player.BeginGo(index))
+            self._host.clock(self._player, "seek", self.times[index], 0.0)
+        except NotFound:  # there is no timeline without a view
+            require(self._player.Go(index))
 
     @property
     def index(self):
@@ -115,8 +147,8 @@ class Run(Playback):
     def play(self, speed=1.0, on_step=None, until=None):
         """Plays at `speed` times real time, backward if it is negative, and returns at once."""
         if on_step is not None or until is not None:
-            raise Unsupported("on_step and until hold the windows; accepted: App.every(), which looks at the run's time",
-                              self.file.label)
+            raise Unsupported(f"{self.file.label}: on_step and until hold the windows; accepted: App.every(), which looks at the "
+                              "run's time", self.file.label)
         self._host.clock(self._player, "speed", real(speed, "the speed", self.file.label), 0.0)
         self._host.clock(self._player, "play", 1.0, 0.0)
 

@@ -125,8 +125,8 @@ void PlaybackTimeSource::Update(double wall_s) {
   }
 }
 
-void PlaybackTimeSource::Aim(std::size_t index) {
-  if (index != this->Target_.value_or(this->Playback_.Index())) {
+void PlaybackTimeSource::Aim(std::size_t index, bool foreign) {
+  if (foreign || index != this->Target_.value_or(this->Playback_.Index())) {
     this->Playback_.Aim(index);
     this->Target_ = index;
   }
@@ -134,6 +134,8 @@ void PlaybackTimeSource::Aim(std::size_t index) {
 
 void PlaybackTimeSource::Advance(double wall_s) {
   this->Update(wall_s);
+  // Of a script, which waits for its end; the user's own movements take over.
+  const bool foreign = !this->Target_ && this->Playback_.IsMoving();
   if (!this->Playback_.IsMoving()) {
     this->Target_.reset();
     if (this->Playback_.Index() != this->Known_) { // moved by a script
@@ -147,16 +149,16 @@ void PlaybackTimeSource::Advance(double wall_s) {
       const std::int64_t to = std::clamp(at + this->Steps_, std::int64_t(this->First_),
                                          std::int64_t(this->Times_.Times().size()) - 1);
       this->Steps_ = 0;
-      this->Aim(std::size_t(to));
+      this->Aim(std::size_t(to), foreign);
       this->Clock_.Seek(this->Times_.Times()[std::size_t(to)]);
       this->Clock_.Advance(wall_s);
-    } else {
+    } else if (!foreign || this->Sought_) {
       this->Clock_.Advance(wall_s);
       this->SkipGap();
       // A movement is completed before playing goes on, so that something is seen.
       if (std::exchange(this->Sought_, false) || !this->Target_) {
         if (const auto index = this->Times_.IndexAt(this->Clock_.Time())) {
-          this->Aim(*index);
+          this->Aim(*index, foreign);
         }
       }
     }

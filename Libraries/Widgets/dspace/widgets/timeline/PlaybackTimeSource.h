@@ -51,7 +51,7 @@ private:
   void ReadEvents();
   void SkipGap();
   void Update(double wall_s);
-  void Aim(std::size_t index);
+  void Aim(std::size_t index, bool foreign); // `foreign`: away from where a script goes
 
   session::Playback& Playback_;
   session::RecordingReader& Reader_;

@@ -315,6 +315,8 @@ void ShownScenes::AskClock(vtkObject* of, const std::string& what, double a, dou
   TimeSource& clock = *entry->clock;
   if (what == "play") {
     clock.Play(a != 0.0);
+  } else if (what == "seek") {
+    clock.Seek(a);
   } else if (what == "speed") {
     clock.SetSpeed(a);
   } else if (what == "follow") {
@@ -325,7 +327,7 @@ void ShownScenes::AskClock(vtkObject* of, const std::string& what, double a, dou
     clock.SetLoop({});
   } else {
     throw Error(Error::Kind::InvalidArgument, "timeline",
-                "there is no '" + what + "'; accepted: play, speed, follow, loop, unloop");
+                "there is no '" + what + "'; accepted: play, seek, speed, follow, loop, unloop");
   }
 }
 
