@@ -14,6 +14,7 @@
 #include <QIcon>
 #include <QMessageBox>
 #include <QPainter>
+#include <QStatusBar>
 #include <QTimer>
 
 #include <dspace/commands/beforehand/ReadApart.h>
@@ -21,6 +22,7 @@
 #include <dspace/widgets/viewport/QtContext.h>
 #include <dspace/widgets/window/MainWindow.h>
 #include <dspace/widgets/window/Shell.h>
+#include <dspace/widgets/window/SmallWindow.h>
 
 namespace {
 
@@ -166,6 +168,16 @@ int Start(QApplication&) {
   }
   if (parser.isSet(layout)) {
     done = window.RestoreLayout(parser.value(layout)) && done;
+  }
+  if (parser.isSet(size)) {
+    QTimer::singleShot(0, &window, [&window, wanted = QSize(width, height)] {
+      const QString told =
+          dspace::widgets::KeepSmall(window, wanted); // with the views of the files
+      if (!told.isEmpty()) {
+        window.statusBar()->showMessage(told);
+        std::cerr << "DspaceQt: --size " << told.toStdString() << "\n";
+      }
+    });
   }
   if (!done && parser.isSet(screenshot)) {
     return 1; // the messages are on the terminal

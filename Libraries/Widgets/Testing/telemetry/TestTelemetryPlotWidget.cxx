@@ -612,3 +612,34 @@ TEST_F(TelemetryPlot, AnySizeAndManySeriesArePainted) {
     EXPECT_FALSE(widget.grab().isNull());
   }
 }
+
+TEST_F(TelemetryPlot, CursorsLeaveTheCurvesTheirHeight) {
+  const char* const units[] = {"deg", "deg", "W", "W", "V", "A"};
+  for (int i = 0; i < 6; ++i) {
+    widget.AddSeries(QString("channel %1").arg(i), units[i], Line(0.0, 100.0, i, i + 3.0, 101));
+  }
+  const double line = std::ceil(QFontMetricsF(widget.font()).height());
+  // As docks under views give them room: low and wide, higher, low and narrow.
+  const QSize sizes[] = {{580, 118}, {580, 230}, {580, 400}, {300, 118}, {1200, 140}};
+  for (const QSize& size : sizes) {
+    widget.SetCursor(0, {});
+    widget.SetCursor(1, {});
+    widget.resize(size);
+    const double before = widget.PlotArea().height();
+    EXPECT_TRUE(widget.ReadoutArea().isEmpty());
+    EXPECT_GT(before, 3.0 * line) << size.width() << " x " << size.height();
+    widget.SetCursor(0, 20.0);
+    widget.SetCursor(1, 70.0);
+    const QRectF area = widget.PlotArea();
+    EXPECT_GE(area.height(), std::min(before, 5.0 * line))
+        << size.width() << " x " << size.height();
+    EXPECT_GT(area.width(), 4.0 * line) << size.width() << " x " << size.height();
+    EXPECT_FALSE(area.intersects(widget.ReadoutArea()));
+    EXPECT_TRUE(QRectF(widget.rect()).contains(area));
+  }
+  // The read-outs are there where there is room.
+  widget.resize(580, 118); // beside
+  EXPECT_GT(widget.ReadoutArea().left(), widget.PlotArea().right());
+  widget.resize(580, 400); // below
+  EXPECT_GT(widget.ReadoutArea().top(), widget.PlotArea().bottom());
+}

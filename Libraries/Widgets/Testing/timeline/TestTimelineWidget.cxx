@@ -607,3 +607,42 @@ TEST(TimelineWidgetTest, MarksAreKeptInTheSideFile) {
   QTest::qWait(100);
   EXPECT_TRUE(widget.Marks().empty());
 }
+
+TEST(TimelineWidgetTest, ViewersOfALiveSceneCountFromTheSameTime) {
+  vtkNew<vtkDspaceSession> session;
+  const auto run = [&](dspace::v1::Command command) {
+    command.set_scene("run");
+    dspace::v1::Reply reply;
+    reply.ParseFromString(session->Execute(command.SerializeAsString()));
+    EXPECT_FALSE(reply.has_error()) << reply.error().message();
+  };
+  dspace::v1::Command command;
+  command.mutable_create_scene();
+  run(command);
+  const auto early = MakeTimeSource(session, "run"); // before the first time is set
+  EXPECT_EQ(early->GetState().range->begin, early->GetState().time_s);
+  for (const double time_s : {5e8, 5e8 + 10.0}) {
+    command.mutable_set_time()->set_time_s(time_s);
+    run(command);
+    early->Advance(0.0);
+  }
+  const auto late = MakeTimeSource(session, "run");
+  EXPECT_EQ(*early->GetState().range, (TimeRange{5e8, 5e8 + 10.0}));
+  EXPECT_EQ(*late->GetState().range, (TimeRange{5e8, 5e8 + 10.0}));
+}
+
+TEST(TimelineWidgetTest, ANarrowOneHasTheElapsedTimeAndTheFactor) {
+  TimelineWidget widget;
+  Show(widget);
+  widget.resize(1000, 120);
+  ASSERT_TRUE(QTest::qWaitFor([&] { return widget.findChild<QLabel*>("utc")->isVisible(); }, 5000));
+  widget.resize(widget.minimumSizeHint().width(), 120);
+  ASSERT_TRUE(
+      QTest::qWaitFor([&] { return !widget.findChild<QLabel*>("utc")->isVisible(); }, 5000));
+  EXPECT_LT(widget.width(), 600);
+  for (const char* shown : {"elapsed", "rate"}) {
+    const auto* label = widget.findChild<QLabel*>(shown);
+    EXPECT_TRUE(label->isVisible());
+    EXPECT_TRUE(QTest::qWaitFor([&] { return label->geometry().right() <= widget.width(); }, 5000));
+  }
+}

@@ -109,3 +109,17 @@ TEST_F(TelemetryDocksTest, ARecordingIsPlottedWholeAndFollowsTheTimeline) {
   EXPECT_FALSE(Plot("plot")); // it was the recording's
   EXPECT_TRUE(Plot("other"));
 }
+
+TEST_F(TelemetryDocksTest, TheFirstPlotGetsAThirdOfTheHeight) {
+  ASSERT_TRUE(Run("for each in list(app.plots): app.plots.pop(each)\n"));
+  for (int i = 1; i < 10; ++i) {
+    if (TelemetryPlotWidget* before = window->Telemetry()->Plot(i)) {
+      delete before->parentWidget(); // its dock
+    }
+  }
+  ASSERT_TRUE(Run("app.new_view()"));
+  ASSERT_TRUE(Settled());
+  ASSERT_TRUE(Run("first = app.plot(of=scene)"));
+  EXPECT_TRUE(Wait([&] { return Plot("first")->height() > window->height() / 4; }, 5000))
+      << Plot("first")->height();
+}

@@ -13,6 +13,13 @@ from dspace.scene.scene import Scene
 Shown = collections.namedtuple("Shown", "object scene")
 
 
+def _title_of(names):
+    """Two names at most: a dock's title and its tab are short."""
+    if len(names) > 2:
+        return f"{names[0]} and {len(names) - 1} more"
+    return ", ".join(names) or "Plot"
+
+
 class Plot:
     """Channels against time in a dock of the window; App.plot() makes it."""
 
@@ -28,7 +35,7 @@ class Plot:
             reject("plot", "of", of, "a Run or a dspace.Scene", WrongType)
         names = [text(channel, "a channel", "plot") for channel in channels]
         series = [self._series(name) for name in names]  # errors before a dock is there
-        title = ", ".join(names) or "Plot" if title is None else text(title, "the title", "plot")
+        title = _title_of(names) if title is None else text(title, "the title", "plot")
         self.number = host.plot(shown, scene or DEFAULT_SCENE, title)
         for name, found in zip(names, series):
             self._put(name, found)

@@ -16,7 +16,7 @@ constexpr double Tick = 5.0;
 constexpr double LineWidth = 1.5;
 constexpr double DenseTravel = 6.0; // of a curve's lines, in widths of the area
 constexpr int MostLegendLines = 3;
-constexpr int MostReadouts = 8;
+constexpr double LowHeight = 13.0;         // below it titles and the legend are short [lines]
 constexpr std::size_t MostSearched = 4096; // samples of a series around the pointer
 const QChar Dash(0x2013);
 
@@ -49,6 +49,13 @@ QString WithUnit(double value, const QString& unit, int digits) {
   return unit.isEmpty() ? text : text + " " + unit;
 }
 
+QColor MixedColor(const QPalette& palette, double part) {
+  const QColor a = palette.color(QPalette::Base);
+  const QColor b = palette.color(QPalette::Text);
+  const auto mix = [part](int from, int to) { return int(std::lround(from + part * (to - from))); };
+  return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
+}
+
 PlotPicture::PlotPicture(const PlotState& state, const QSizeF& size, const QFont& font,
                          const QPalette& palette, double ratio)
     : State_(state), Size_(size), Font_(font), Palette_(palette), Ratio_(ratio) {
@@ -57,6 +64,9 @@ PlotPicture::PlotPicture(const PlotState& state, const QSizeF& size, const QFont
   const QFontMetricsF metrics(this->Font_);
   this->Line_ = std::ceil(metrics.height());
   const double line = this->Line_;
+
+  this->Low_ = size.height() < LowHeight * line;
+  const int mostLines = this->Low_ ? 1 : MostLegendLines;
 
   // The legend, in lines.
   double top = Margin;
@@ -71,10 +81,9 @@ PlotPicture::PlotPicture(const PlotState& state, const QSizeF& size, const QFont
     entry.text = metrics.elidedText(state.series[i].Title(), Qt::ElideMiddle, most);
     const double width = swatch + metrics.horizontalAdvance(entry.text) + line;
     const bool last = i + 1 == state.series.size();
-    const double room =
-        lines == MostLegendLines && !last ? widest - 4.0 * line : widest; // for "+12"
+    const double room = lines == mostLines && !last ? widest - 4.0 * line : widest; // for "+12"
     if (x > Margin && x + width - line > Margin + room) {
-      if (lines == MostLegendLines) {
+      if (lines == mostLines) {
         this->LegendHidden_ = int(state.series.size() - i);
         this->LegendMore_ = QRectF(x, top, 4.0 * line, line);
         break;
@@ -89,25 +98,19 @@ PlotPicture::PlotPicture(const PlotState& state, const QSizeF& size, const QFont
   }
   top = Margin + lines * (line + 2.0) + (lines ? 4.0 : 0.0);
 
-  // Read-outs of the cursors at the bottom.
-  double bottom = size.height() - Margin;
-  if (state.cursors[0] || state.cursors[1]) {
-    const int drawn = int(std::count_if(state.series.begin(), state.series.end(),
-                                        [&](const auto& each) { return each.shown; }));
-    const int rows = std::min(drawn, MostReadouts) + 1 + (drawn > MostReadouts ? 1 : 0);
-    const double height =
-        std::min(rows * line, std::max(2.0 * line, std::floor(0.4 * size.height() / line) * line));
-    this->Readouts_ = QRectF(Margin, bottom - height, widest, height);
-    bottom -= height + 6.0;
-  }
-  // Tick texts, and the title below them.
-  const double xHeight = Tick + 2.0 + line + line;
+  // Tick texts, and the title below them, or before them.
+  const double xHeight = Tick + 2.0 + (this->Low_ ? 1.0 : 2.0) * line;
+  const QRectF room(Margin, top, widest, std::max(size.height() - Margin - top, 1.0));
+  this->Readouts_.emplace(state, this->Font_, palette, room, xHeight);
+  const QRectF rest = this->Readouts_->Rest();
+  const double bottom = rest.bottom();
   const double areaBottom = std::max(bottom - xHeight, top + 1.0);
 
   // Ticks of the values fit the height.
   const int rows = std::clamp(int((areaBottom - top) / (2.2 * line)), 2, 12);
   double left = Margin;
-  double right = size.width() - Margin;
+  double right = rest.right();
+  const bool many = state.axes.size() > 2;
   for (std::size_t i = 0; i < state.axes.size(); ++i) {
     Axis axis;
     axis.left = i % 2 == 0;
@@ -118,8 +121,9 @@ PlotPicture::PlotPicture(const PlotState& state, const QSizeF& size, const QFont
     }
     // In steps, so that the area stays where it is while the user zooms and moves.
     const double step = metrics.horizontalAdvance("0000");
-    const double texts = step * std::max(2.0, std::ceil(axis.textWidth / step));
-    const double width = std::ceil(texts) + Tick + 6.0 + line; // and the turned title
+    const double texts = step * std::max(many ? 1.0 : 2.0, std::ceil(axis.textWidth / step));
+    const double title = this->Low_ && many ? 0.0 : line; // it is turned
+    const double width = std::ceil(texts) + Tick + 6.0 + title;
     axis.area = QRectF(0.0, top, width, areaBottom - top);
     this->Axes_.push_back(axis);
     (axis.left ? left : right) += axis.left ? width + 4.0 : -width - 4.0;
@@ -172,10 +176,7 @@ PlotMap PlotPicture::MapOf(int axis) const {
 }
 
 QColor PlotPicture::Mixed(double part) const {
-  const QColor a = this->Palette_.color(QPalette::Base);
-  const QColor b = this->Palette_.color(QPalette::Text);
-  const auto mix = [part](int from, int to) { return int(std::lround(from + part * (to - from))); };
-  return {mix(a.red(), b.red()), mix(a.green(), b.green()), mix(a.blue(), b.blue())};
+  return MixedColor(this->Palette_, part);
 }
 
 QString PlotPicture::XTitle() const {
@@ -242,6 +243,9 @@ void PlotPicture::PaintAxis(QPainter& painter, int number) const {
         axis.left ? edge - Tick - 3.0 - width : edge + Tick + 3.0 + axis.textWidth - width;
     painter.drawText(QPointF(x, base), text);
   }
+  if (this->Low_ && this->Axes_.size() > 2) {
+    return; // the legend has names and units, in the colours of the ticks
+  }
   painter.save();
   painter.setPen(color);
   const QString title =
@@ -254,6 +258,24 @@ void PlotPicture::PaintAxis(QPainter& painter, int number) const {
   painter.rotate(-90.0);
   painter.drawText(QPointF(0.0, 0.0), title);
   painter.restore();
+}
+
+void PlotPicture::PaintXTitle(QPainter& painter) const {
+  const QFontMetricsF metrics(this->Font_);
+  painter.setPen(this->Palette_.color(QPalette::Text));
+  const double base = this->Area_.bottom() + Tick + 2.0 + metrics.ascent();
+  if (this->Low_) { // at the left of the ticks, below the axes of values
+    const double room = this->Area_.left() - 1.5 * this->Line_ - Margin;
+    const QString title = metrics.elidedText(this->XTitle(), Qt::ElideLeft, std::max(room, 1.0));
+    painter.drawText(QPointF(Margin + room - metrics.horizontalAdvance(title), base), title);
+    return;
+  }
+  const double most = this->Size_.width() - 2.0 * Margin;
+  const QString title = metrics.elidedText(this->XTitle(), Qt::ElideMiddle, most);
+  const double width = metrics.horizontalAdvance(title);
+  const double end = std::max(this->Size_.width() - width - Margin, Margin);
+  const double x = std::clamp(this->Area_.center().x() - 0.5 * width, Margin, end);
+  painter.drawText(QPointF(x, base + this->Line_), title);
 }
 
 void PlotPicture::PaintGround(QPainter& painter) const {
@@ -325,14 +347,7 @@ void PlotPicture::PaintGround(QPainter& painter) const {
       after = from + width + 2.0;
     }
   }
-  painter.setPen(text);
-  const QString title =
-      metrics.elidedText(this->XTitle(), Qt::ElideMiddle, this->Size_.width() - 2.0 * Margin);
-  const double width = metrics.horizontalAdvance(title);
-  painter.drawText(QPointF(std::clamp(this->Area_.center().x() - 0.5 * width, Margin,
-                                      std::max(this->Size_.width() - width - Margin, Margin)),
-                           this->Area_.bottom() + Tick + 2.0 + this->Line_ + metrics.ascent()),
-                   title);
+  this->PaintXTitle(painter);
 
   // Curves.
   const PlotSeries* xSeries = this->State_.XSeries();
@@ -396,7 +411,6 @@ void PlotPicture::PaintMarks(QPainter& painter) const {
   }
   painter.setFont(this->Font_);
   const QFontMetricsF metrics(this->Font_);
-  const QColor text = this->Palette_.color(QPalette::Text);
   const QColor highlight = this->Palette_.color(QPalette::Highlight);
   const PlotMap map = this->MapOf(-1);
   // name "": the current time.
@@ -444,63 +458,7 @@ void PlotPicture::PaintMarks(QPainter& painter) const {
       mark(*this->State_.cursors[std::size_t(i)], i == 0 ? "A" : "B", this->Mixed(0.8));
     }
   }
-  painter.setPen(text);
-  this->PaintReadouts(painter);
-}
-
-void PlotPicture::PaintReadouts(QPainter& painter) const {
-  if (this->Readouts_.isEmpty()) {
-    return;
-  }
-  const QFontMetricsF metrics(this->Font_);
-  const auto& [a, b] = this->State_.cursors;
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  struct Row {
-    QString cells[4];
-    QColor color;
-  };
-  const QColor text = this->Palette_.color(QPalette::Text);
-  std::vector<Row> rows;
-  const QString delta(QChar(0x0394));
-  rows.push_back({{"time", "A " + WithUnit(a.value_or(none), "s", 12),
-                   "B " + WithUnit(b.value_or(none), "s", 12),
-                   delta + "t " + WithUnit(a && b ? *b - *a : none, "s", 9)},
-                  text});
-  const std::size_t fit = std::size_t(std::max(1.0, this->Readouts_.height() / this->Line_));
-  std::size_t left = 0;
-  for (const PlotSeries& series : this->State_.series) {
-    if (!series.shown) {
-      continue;
-    }
-    if (rows.size() >= fit) {
-      ++left;
-      continue;
-    }
-    const double valueA = a ? series.samples->At(*a, series.holds) : none;
-    const double valueB = b ? series.samples->At(*b, series.holds) : none;
-    rows.push_back({{series.name, WithUnit(valueA, series.unit), WithUnit(valueB, series.unit),
-                     delta + " " + WithUnit(valueB - valueA, series.unit)},
-                    ColorOf(series.color, this->Palette_)});
-  }
-  if (left > 0) {
-    rows.back() = {{QString("+%1 more").arg(left + 1), "", "", ""}, this->Mixed(0.6)};
-  }
-  const double width = this->Readouts_.width();
-  const double column = std::min(0.24 * width, 14.0 * this->Line_);
-  const double names = width - 3.0 * column;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double base = this->Readouts_.top() + double(i) * this->Line_ + metrics.ascent();
-    for (int c = 0; c < 4; ++c) {
-      painter.setPen(c == 0 ? rows[i].color : text);
-      const double room = (c == 0 ? names : column) - 8.0;
-      const QString shown = metrics.elidedText(
-          rows[i].cells[c], c == 0 ? Qt::ElideMiddle : Qt::ElideRight, std::max(room, 1.0));
-      const double x =
-          c == 0 ? this->Readouts_.left()
-                 : this->Readouts_.left() + names + c * column - metrics.horizontalAdvance(shown);
-      painter.drawText(QPointF(x, base), shown);
-    }
-  }
+  this->Readouts_->Paint(painter);
 }
 
 PlotPicture::Hit PlotPicture::Nearest(const QPointF& place, double distance) const {

@@ -11,12 +11,16 @@
 #include <QRectF>
 
 #include <dspace/widgets/telemetry/PlotCurve.h>
+#include <dspace/widgets/telemetry/PlotReadouts.h>
 #include <dspace/widgets/telemetry/PlotState.h>
 
 namespace dspace::widgets {
 
 // The colour of a series' number on a light or dark ground; 8 differ.
 QColor ColorOf(int number, const QPalette& palette);
+
+// From the ground's colour (0) to the text's (1).
+QColor MixedColor(const QPalette& palette, double part);
 
 // A number with its unit: 7 digits, or as many as given.
 QString WithUnit(double value, const QString& unit, int digits = 7);
@@ -46,7 +50,8 @@ public:
 
   const QRectF& Area() const { return this->Area_; }
   const QRectF& XArea() const { return this->XArea_; }
-  const std::vector<Axis>& Axes() const { return this->Axes_; } // as PlotState::axes
+  QRectF ReadoutArea() const { return this->Readouts_->Area(); } // empty: there is none
+  const std::vector<Axis>& Axes() const { return this->Axes_; }  // as PlotState::axes
   const PlotTicks& XTicks() const { return this->XTicks_; }
   const std::vector<LegendEntry>& Legend() const { return this->Legend_; }
   QString XTitle() const;
@@ -62,7 +67,7 @@ public:
 
 private:
   void PaintAxis(QPainter& painter, int number) const;
-  void PaintReadouts(QPainter& painter) const;
+  void PaintXTitle(QPainter& painter) const;
   QString TitleOf(int axis) const;
   QColor Mixed(double part) const; // of the text's colour in the ground's
   bool IsPairs() const { return this->State_.XSeries() != nullptr; }
@@ -75,7 +80,8 @@ private:
   double Line_; // height of a line of text
   QRectF Area_;
   QRectF XArea_;
-  QRectF Readouts_;
+  bool Low_ = false;                     // a low picture saves height: titles and legend are short
+  std::optional<PlotReadouts> Readouts_; // always there, after the layout
   PlotTicks XTicks_;
   std::vector<Axis> Axes_;
   std::vector<LegendEntry> Legend_;

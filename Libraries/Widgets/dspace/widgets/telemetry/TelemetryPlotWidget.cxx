@@ -32,6 +32,7 @@
 #include <dspace/state/Telemetry.h>
 #include <dspace/widgets/telemetry/ChannelMime.h>
 #include <dspace/widgets/telemetry/PlotPicture.h>
+#include <dspace/widgets/telemetry/PlotRanges.h>
 #include <dspace/widgets/telemetry/SampleCsv.h>
 #include <dspace/widgets/telemetry/SampleSeries.h>
 #include <dspace/widgets/telemetry/SvgPaintDevice.h>
@@ -44,8 +45,6 @@ constexpr int Message_ms = 8000;     // how long a failure is shown
 constexpr double ZoomStep = 1.25;    // a notch of the wheel
 constexpr double Grip = 5.0;         // to a line that is dragged
 constexpr double TipDistance = 10.0; // to a sample
-constexpr double ValueMargin = 0.05; // above and below the values
-constexpr double LeastRectangle = 6.0;
 
 } // namespace
 
@@ -56,9 +55,7 @@ struct TelemetryPlotWidget::Internals {
 
   TelemetryPlotWidget* widget;
   PlotState state;
-  bool followsX = true;      // the ranges of X
-  bool followsValues = true; // the ranges of values
-  double window = 0.0;
+  PlotRanges ranges{this->state};
   std::size_t shownSamples = 0; // in all series, when ranges were last set
 
   TelemetrySource source;
@@ -141,151 +138,20 @@ struct TelemetryPlotWidget::Internals {
     this->SeriesChanged();
   }
 
-  // Axes are those of the drawn series, in the order of these; ranges that are there stay.
   void SeriesChanged() {
-    if (!this->state.XSeries()) {
-      this->state.xName.clear();
-    }
-    std::vector<PlotValueAxis> axes;
-    std::vector<QString> fresh;
-    for (const PlotSeries& each : this->state.series) {
-      if (!this->state.IsDrawn(each) ||
-          std::any_of(axes.begin(), axes.end(),
-                      [&](const PlotValueAxis& axis) { return axis.unit == each.unit; })) {
-        continue;
-      }
-      const PlotValueAxis* before = this->FindAxis(each.unit);
-      if (!before) {
-        fresh.push_back(each.unit);
-      }
-      axes.push_back(before ? *before : PlotValueAxis{each.unit, {}});
-    }
-    this->state.axes = std::move(axes);
-    this->Follow();
-    if (!this->followsValues) {
-      for (const QString& unit : fresh) {
-        this->FitValues(*this->FindAxis(unit));
-      }
-    }
+    this->ranges.SeriesChanged();
     this->Changed();
     emit this->widget->seriesChanged();
   }
 
   // --- Ranges ------------------------------------------------------------------------------------
 
-  // Of the times of all series.
-  SampleExtent Times() const {
-    SampleExtent times;
-    for (const PlotSeries& each : this->state.series) {
-      if (!each.samples->IsEmpty()) {
-        times.Add(each.samples->Time(0));
-        times.Add(each.samples->Time(each.samples->Size() - 1));
-      }
-    }
-    return times;
-  }
-  SampleExtent InTimes(const PlotSeries& series, const PlotRange& times) const {
-    std::size_t begin = series.samples->Lower(times.low);
-    const std::size_t end = series.samples->Upper(times.high);
-    if (series.holds && begin > 0 &&
-        (begin == series.samples->Size() || series.samples->Time(begin) > times.low)) {
-      --begin; // still holds
-    }
-    return series.samples->Extent(begin, end);
-  }
-  void FitValues(PlotValueAxis& axis) const {
-    SampleExtent extent;
-    for (const PlotSeries& each : this->state.series) {
-      if (this->state.IsDrawn(each) && each.unit == axis.unit) {
-        const SampleExtent own =
-            this->InTimes(each, this->state.XSeries() ? this->state.xTimes : this->state.time);
-        extent.Add(own.min);
-        extent.Add(own.max);
-      }
-    }
-    axis.range = Around(extent, ValueMargin);
-  }
-  void Follow() {
-    if (this->followsX) {
-      SampleExtent times = this->Times();
-      if (!std::isnan(times.max) && this->window > 0.0) {
-        times.min = times.max - this->window;
-      }
-      this->state.time = Around(times, 0.0);
-      this->state.xTimes = this->state.time;
-      if (const PlotSeries* x = this->state.XSeries()) {
-        this->state.xValues = Around(this->InTimes(*x, this->state.xTimes), ValueMargin);
-      }
-    }
-    if (this->followsValues) {
-      for (PlotValueAxis& each : this->state.axes) {
-        this->FitValues(each);
-      }
-    }
-  }
-  void SetX(const PlotRange& range) {
-    this->followsX = false;
-    (this->state.XSeries() ? this->state.xValues : this->state.time) = Shown(range);
-    if (this->followsValues && !this->state.XSeries()) {
-      this->Follow();
-    }
-  }
-  void SetValues(PlotValueAxis& axis, const PlotRange& range) {
-    this->followsValues = false;
-    axis.range = Shown(range);
-  }
   void Zoom(const QPointF& place, double factor, bool alongX, int axis) {
-    PlotPicture& shown = this->Picture();
-    std::vector<PlotRange> ranges;
-    for (int i = 0; i < int(this->state.axes.size()); ++i) {
-      const PlotMap map = shown.MapOf(i);
-      ranges.push_back(axis == -1 || axis == i ? Zoomed(map.y, map.YAt(place.y()), factor) : map.y);
-    }
-    const PlotMap map = shown.MapOf(-1);
-    if (alongX) {
-      this->SetX(Zoomed(map.x, map.XAt(place.x()), factor));
-    }
-    if (axis != -2) {
-      for (std::size_t i = 0; i < ranges.size(); ++i) {
-        this->SetValues(this->state.axes[i], ranges[i]);
-      }
-    }
+    this->ranges.Zoom(this->Picture(), place, factor, alongX, axis);
     this->Changed();
   }
   void Pan(const QPointF& by, bool alongX, int axis) {
-    PlotPicture& shown = this->Picture();
-    const QRectF area = shown.Area();
-    const PlotRange x = this->state.XRange();
-    if (axis != -2) {
-      for (int i = 0; i < int(this->state.axes.size()); ++i) {
-        if (axis == -1 || axis == i) {
-          PlotValueAxis& each = this->state.axes[std::size_t(i)];
-          this->SetValues(each, Moved(each.range, each.range.Length() * by.y() / area.height()));
-        }
-      }
-    }
-    if (alongX && by.x() != 0.0) {
-      this->SetX(Moved(x, -x.Length() * by.x() / area.width()));
-    }
-    this->Changed();
-  }
-  void ZoomTo(const QRectF& rectangle) {
-    PlotPicture& shown = this->Picture();
-    const QRectF part = rectangle & shown.Area();
-    if (part.width() < LeastRectangle || part.height() < LeastRectangle) {
-      return;
-    }
-    std::vector<PlotRange> ranges;
-    for (int i = 0; i < int(this->state.axes.size()); ++i) {
-      const PlotMap map = shown.MapOf(i);
-      ranges.push_back({map.YAt(part.bottom()), map.YAt(part.top())});
-    }
-    const PlotMap map = shown.MapOf(-1);
-    const PlotRange x{map.XAt(part.left()), map.XAt(part.right())};
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      this->SetValues(this->state.axes[i], ranges[i]);
-    }
-    this->SetX(x);
+    this->ranges.Pan(this->Picture(), by, alongX, axis);
     this->Changed();
   }
 
@@ -331,7 +197,7 @@ struct TelemetryPlotWidget::Internals {
     }
     if (any || count != this->shownSamples) {
       this->shownSamples = count;
-      this->Follow();
+      this->ranges.Follow();
       this->Changed();
     }
   }
@@ -478,7 +344,7 @@ struct TelemetryPlotWidget::Internals {
       bool good = false;
       const double seconds = QInputDialog::getDouble(
           this->widget, "Sliding window", "Seconds that are shown while it follows; 0: all",
-          this->window, 0.0, 1e9, 3, &good);
+          this->ranges.Window(), 0.0, 1e9, 3, &good);
       if (good) {
         this->widget->SetWindow(seconds);
       }
@@ -624,7 +490,7 @@ void TelemetryPlotWidget::RemoveAll() {
   Internals& self = *this->Impl_;
   self.channels.clear();
   self.state.series.clear();
-  self.followsX = self.followsValues = true;
+  self.ranges.FollowAll();
   self.SeriesChanged();
 }
 
@@ -664,7 +530,7 @@ void TelemetryPlotWidget::SetXSeries(const QString& name) {
     return;
   }
   self.state.xName = name;
-  self.followsX = self.followsValues = true;
+  self.ranges.FollowAll();
   self.SeriesChanged();
 }
 
@@ -675,23 +541,23 @@ QString TelemetryPlotWidget::XSeries() const {
 void TelemetryPlotWidget::SetWindow(double seconds) {
   Require(std::isfinite(seconds) && seconds >= 0.0, "plot", "its window", seconds,
           "seconds, 0 for all");
-  this->Impl_->window = seconds;
+  this->Impl_->ranges.SetWindow(seconds);
   this->ShowAll();
 }
 
 double TelemetryPlotWidget::Window() const {
-  return this->Impl_->window;
+  return this->Impl_->ranges.Window();
 }
 
 void TelemetryPlotWidget::ShowAll() {
   Internals& self = *this->Impl_;
-  self.followsX = self.followsValues = true;
-  self.Follow();
+  self.ranges.FollowAll();
+  self.ranges.Follow();
   self.Changed();
 }
 
 bool TelemetryPlotWidget::IsFollowing() const {
-  return this->Impl_->followsX;
+  return this->Impl_->ranges.IsFollowing();
 }
 
 PlotRange TelemetryPlotWidget::XRange() const {
@@ -699,7 +565,7 @@ PlotRange TelemetryPlotWidget::XRange() const {
 }
 
 void TelemetryPlotWidget::SetXRange(const PlotRange& range) {
-  this->Impl_->SetX(range);
+  this->Impl_->ranges.SetX(range);
   this->Impl_->Changed();
 }
 
@@ -718,7 +584,7 @@ PlotRange TelemetryPlotWidget::ValueRange(const QString& unit) const {
 
 void TelemetryPlotWidget::SetValueRange(const QString& unit, const PlotRange& range) {
   if (PlotValueAxis* axis = this->Impl_->FindAxis(unit)) {
-    this->Impl_->SetValues(*axis, range);
+    this->Impl_->ranges.SetValues(*axis, range);
     this->Impl_->Changed();
   }
 }
@@ -841,6 +707,10 @@ QRectF TelemetryPlotWidget::ValueAxisArea(const QString& unit) const {
   return {};
 }
 
+QRectF TelemetryPlotWidget::ReadoutArea() const {
+  return this->Impl_->Picture().ReadoutArea();
+}
+
 QRectF TelemetryPlotWidget::LegendArea(const QString& name) const {
   for (const auto& entry : this->Impl_->Picture().Legend()) {
     if (this->Impl_->state.series[std::size_t(entry.series)].name == name) {
@@ -955,11 +825,12 @@ void TelemetryPlotWidget::wheelEvent(QWheelEvent* event) {
   if (axis >= 0) {
     self.Zoom(place, factor, false, axis);
   } else if (self.Picture().XArea().contains(place)) {
-    self.Zoom(place, factor, true, -2);
+    self.Zoom(place, factor, true, PlotRanges::NoAxis);
   } else if (self.Picture().Area().contains(place)) {
     const bool onlyX = event->modifiers().testFlag(Qt::ControlModifier);
     const bool onlyValues = event->modifiers().testFlag(Qt::ShiftModifier);
-    self.Zoom(place, factor, !onlyValues || onlyX, onlyX ? -2 : -1);
+    self.Zoom(place, factor, !onlyValues || onlyX,
+              onlyX ? PlotRanges::NoAxis : PlotRanges::AllAxes);
   }
 }
 
@@ -1000,7 +871,8 @@ void TelemetryPlotWidget::mouseMoveEvent(QMouseEvent* event) {
     if (self.dragAxis >= 0) {
       self.Pan(place - self.last, false, self.dragAxis);
     } else {
-      self.Pan(place - self.last, true, self.dragX || self.state.axes.empty() ? -2 : -1);
+      self.Pan(place - self.last, true,
+               self.dragX || self.state.axes.empty() ? PlotRanges::NoAxis : PlotRanges::AllAxes);
     }
     this->setCursor(Qt::ClosedHandCursor);
     break;
@@ -1026,8 +898,10 @@ void TelemetryPlotWidget::mouseReleaseEvent(QMouseEvent* event) {
   this->setCursor(Qt::ArrowCursor);
   if (right) {
     if (self.moved) {
-      self.ZoomTo(QRectF(self.pressed, place).normalized());
-      this->update();
+      if (self.ranges.ZoomTo(self.Picture(), QRectF(self.pressed, place).normalized())) {
+        self.Changed();
+      }
+      this->update(); // without the rectangle
     } else {
       self.Menu(place, event->globalPosition().toPoint());
     }
@@ -1100,22 +974,22 @@ void TelemetryPlotWidget::keyPressEvent(QKeyEvent* event) {
     break;
   case Qt::Key_Plus:
   case Qt::Key_Equal:
-    self.Zoom(place, 1.0 / ZoomStep, true, -1);
+    self.Zoom(place, 1.0 / ZoomStep, true, PlotRanges::AllAxes);
     break;
   case Qt::Key_Minus:
-    self.Zoom(place, ZoomStep, true, -1);
+    self.Zoom(place, ZoomStep, true, PlotRanges::AllAxes);
     break;
   case Qt::Key_Left:
-    self.Pan({step * area.width(), 0.0}, true, -2);
+    self.Pan({step * area.width(), 0.0}, true, PlotRanges::NoAxis);
     break;
   case Qt::Key_Right:
-    self.Pan({-step * area.width(), 0.0}, true, -2);
+    self.Pan({-step * area.width(), 0.0}, true, PlotRanges::NoAxis);
     break;
   case Qt::Key_Up:
-    self.Pan({0.0, step * area.height()}, false, -1);
+    self.Pan({0.0, step * area.height()}, false, PlotRanges::AllAxes);
     break;
   case Qt::Key_Down:
-    self.Pan({0.0, -step * area.height()}, false, -1);
+    self.Pan({0.0, -step * area.height()}, false, PlotRanges::AllAxes);
     break;
   default:
     QWidget::keyPressEvent(event);

@@ -97,6 +97,8 @@ public:
   QRectF XAxisArea() const;
   QRectF ValueAxisArea(const QString& unit) const; // empty: there is none
   QRectF LegendArea(const QString& name) const;    // empty: there is none
+  // Of the cursors: below the curves, or beside them where these would have too little height.
+  QRectF ReadoutArea() const; // empty: no cursor is set, or there is no room
   // Where a series is at a time; none: out of view.
   std::optional<QPointF> PlaceOf(const QString& name, double time_s) const;
 

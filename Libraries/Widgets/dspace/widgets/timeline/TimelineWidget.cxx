@@ -64,6 +64,8 @@ struct TimelineWidget::Internals {
   QHBoxLayout* tools = nullptr;
   QLabel* utc = nullptr;
   QLabel* elapsed = nullptr;
+  int wide = 0; // the width of buttons and clock, without tools
+  int less = 0; // what it is less without UTC and seconds
   QLabel* j2000 = nullptr;
   QLabel* rate = nullptr;
   QLabel* speed = nullptr;
@@ -256,6 +258,7 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   self.writer.setExpiryTimeout(2000);
   this->setFocusPolicy(Qt::StrongFocus);
   auto* column = new QVBoxLayout(this);
+  column->setSizeConstraint(QLayout::SetNoConstraint); // a narrow one shows less
   column->setContentsMargins(6, 4, 6, 4);
   column->setSpacing(2);
   auto* row = new QHBoxLayout;
@@ -324,6 +327,9 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   clock->addWidget(self.j2000, 1, 0);
   clock->addWidget(self.rate, 1, 1);
   row->addLayout(clock);
+  self.wide = row->minimumSize().width() + column->contentsMargins().left() +
+              column->contentsMargins().right();
+  self.less = self.utc->minimumWidth() + clock->horizontalSpacing();
 
   self.bar = new ScrubBar;
   column->addWidget(self.bar);
@@ -373,6 +379,20 @@ TimelineWidget::TimelineWidget(QWidget* parent)
   self.ticks.start(Tick_ms);
   self.SetIcons();
   self.Show();
+}
+
+QSize TimelineWidget::minimumSizeHint() const {
+  const Internals& self = *this->Impl_;
+  return {self.wide + self.tools->minimumSize().width() - self.less,
+          QWidget::minimumSizeHint().height()};
+}
+
+void TimelineWidget::resizeEvent(QResizeEvent* event) {
+  QWidget::resizeEvent(event);
+  const Internals& self = *this->Impl_;
+  const bool wide = this->width() >= self.wide + self.tools->minimumSize().width();
+  self.utc->setVisible(wide);
+  self.j2000->setVisible(wide);
 }
 
 TimelineWidget::~TimelineWidget() {

@@ -47,12 +47,16 @@ public:
   // A button beside the others.
   void AddTool(QWidget* tool);
 
+  // Where it is narrow, the clock has the elapsed time and the real-time factor alone.
+  QSize minimumSizeHint() const override;
+
 signals:
   void timeChanged(double time_s);
   void marksChanged(); // in memory, or as the file was read
   void failed(const QString& message);
 
 protected:
+  void resizeEvent(QResizeEvent* event) override;
   void keyPressEvent(QKeyEvent* event) override;
   void changeEvent(QEvent* event) override;
 

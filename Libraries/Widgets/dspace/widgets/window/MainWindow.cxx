@@ -423,12 +423,15 @@ void MainWindow::MakeMenus() {
   CompleteMnemonics(this->menuBar());
 }
 
-bool MainWindow::Run(const QString& python) {
+bool MainWindow::Run(const QString& python, const QString& about) {
   this->Errors_.clear();
   const bool done = this->Console_->Run(python);
   if (!done) {
     // The last line of a traceback says what is wrong.
-    const QString why = this->Errors_.trimmed().section('\n', -1).trimmed();
+    QString why = this->Errors_.trimmed().section('\n', -1).trimmed();
+    if (!about.isEmpty() && !why.contains(about)) {
+      why = about + QStringLiteral(": ") + why;
+    }
     this->Shell_->Notices()->Fail(why.isEmpty() ? tr("Failed: %1").arg(python) : why,
                                   python + '\n' + this->Errors_);
     this->Report(tr("Failed: %1 (see the Python dock)").arg(python));
@@ -437,7 +440,7 @@ bool MainWindow::Run(const QString& python) {
 }
 
 bool MainWindow::Connect(const QString& address) {
-  return this->Run(QStringLiteral("app.connect(%1)").arg(Quoted(address)));
+  return this->Run(QStringLiteral("app.connect(%1)").arg(Quoted(address)), address);
 }
 
 bool MainWindow::Listen(const QString& address, const QStringList& roots) {
@@ -472,7 +475,7 @@ bool MainWindow::LoadPlugIns(const QStringList& names) {
 
 bool MainWindow::Open(const QString& path) {
   const QString full = QFileInfo(path).absoluteFilePath();
-  if (!this->Run(QStringLiteral("app.open(%1)").arg(Quoted(full)))) {
+  if (!this->Run(QStringLiteral("app.open(%1)").arg(Quoted(full)), QFileInfo(full).fileName())) {
     return false;
   }
   this->Shell_->Recent()->Add(full);
@@ -600,8 +603,8 @@ void MainWindow::ShowView(vtkObject* of, const std::string& viewport, const std:
     QTimer::singleShot(0, this, [this, dock = QPointer<QDockWidget>(dock)] {
       this->Arranging_ = false;
       if (dock) {
-        this->resizeDocks({dock, this->ConsoleDock_}, {4 * this->height() / 5, this->height() / 5},
-                          Qt::Vertical);
+        const int low = int(std::max(0.2, this->Telemetry_->HeightShare()) * this->height());
+        this->resizeDocks({dock, this->ConsoleDock_}, {this->height() - low, low}, Qt::Vertical);
         this->resizeDocks({this->SceneDock_, dock}, {this->width() / 4, 3 * this->width() / 4},
                           Qt::Horizontal);
       }

@@ -67,7 +67,8 @@ public:
   // Returns whether all of `names` were loaded.
   bool LoadPlugIns(const QStringList& names);
   static QString PlugInFolder();
-  bool Run(const QString& python);
+  // `about`: what the notice of a failure names if its message does not; "": nothing.
+  bool Run(const QString& python, const QString& about = {});
   ConsoleWidget* Console() const { return this->Console_; }
   PythonInterpreter* Interpreter() const { return this->Interpreter_.get(); }
   // The widget of a viewport; null: it is not shown.

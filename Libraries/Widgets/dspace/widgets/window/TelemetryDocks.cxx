@@ -1,9 +1,11 @@
 #include <dspace/widgets/window/TelemetryDocks.h>
 
+#include <algorithm>
 #include <exception>
 
 #include <QDockWidget>
 #include <QMainWindow>
+#include <QTimer>
 
 #include "vtkDspacePlayer.h"
 
@@ -15,6 +17,11 @@
 #include <dspace/widgets/window/ShownScenes.h>
 
 namespace dspace::widgets {
+namespace {
+
+constexpr double PlotHeight = 0.34; // of the window's, at least
+
+} // namespace
 
 TelemetryDocks::TelemetryDocks(QMainWindow* window, ShownScenes* scenes, TimelineWidget* timeline)
     : QObject(window), Window_(window), Scenes_(scenes), Timeline_(timeline) {
@@ -96,6 +103,7 @@ long TelemetryDocks::NewPlot(vtkObject* of, const std::string& scene, const std:
   }
   this->Window_->addDockWidget(Qt::BottomDockWidgetArea, dock);
   if (beside == this->TableDock_) {
+    QTimer::singleShot(0, dock, [this, dock] { this->GiveHeight(dock); }); // when it has its place
     this->Window_->splitDockWidget(beside, dock, Qt::Horizontal);
   } else {
     this->Window_->tabifyDockWidget(beside, dock);
@@ -103,6 +111,33 @@ long TelemetryDocks::NewPlot(vtkObject* of, const std::string& scene, const std:
   dock->show();
   dock->raise();
   return number;
+}
+
+void TelemetryDocks::GiveHeight(QDockWidget* plot) {
+  const int height = int(this->HeightShare() * this->Window_->height());
+  if (plot->isFloating() || plot->height() >= height) {
+    return;
+  }
+  QList<QDockWidget*> docks = {plot};
+  QList<int> sizes = {height};
+  for (QDockWidget* each : this->Window_->findChildren<QDockWidget*>()) { // what is above it
+    const Qt::DockWidgetArea area = this->Window_->dockWidgetArea(each);
+    if ((area == Qt::LeftDockWidgetArea || area == Qt::RightDockWidgetArea) && each->isVisible() &&
+        !each->isFloating()) {
+      docks << each;
+      sizes << std::max(each->height() - (height - plot->height()), 1);
+    }
+  }
+  this->Window_->resizeDocks(docks, sizes, Qt::Vertical);
+}
+
+double TelemetryDocks::HeightShare() const {
+  return std::any_of(this->Plots_.begin(), this->Plots_.end(),
+                     [](const auto& entry) {
+                       return entry.second.dock && !entry.second.dock->isFloating();
+                     })
+             ? PlotHeight
+             : 0.0;
 }
 
 void TelemetryDocks::AddChannel(long plot, const std::string& channel) {

@@ -44,6 +44,8 @@ public:
   void AddSeries(long plot, const std::string& name, const std::string& unit,
                  const std::vector<double>& times, const std::vector<double>& values);
   TelemetryPlotWidget* Plot(long plot) const; // null: it is closed
+  // The part of the window's height that the docks of plots want, at least; 0: none is docked.
+  double HeightShare() const;
   // The plots of a scene's session close.
   void Forget(vtkObject* of);
 
@@ -62,6 +64,7 @@ private:
     QPointer<TelemetryPlotWidget> widget;
   };
   Plot_t& Find(long plot);
+  void GiveHeight(QDockWidget* plot);
 
   QMainWindow* Window_;
   ShownScenes* Scenes_;
