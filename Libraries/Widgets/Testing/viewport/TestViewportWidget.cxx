@@ -267,3 +267,61 @@ TEST_P(WidgetTest, AFailureIsShownAndToldOnce) {
   ASSERT_GE(failures.count(), 1);
   EXPECT_EQ(failures.at(0).at(0).toString(), "the hook is stuck");
 }
+
+TEST_P(WidgetTest, LinesAreAsWideAsTheCores) {
+  dspace::Mesh line;
+  line.name = "trail";
+  line.primitive = dspace::Mesh::Primitive::Lines;
+  line.positions = {0.0F, -2.0F, 1.5F, 0.0F, 2.0F, 1.5F};
+  line.indices = {0, 1};
+  dspace::GraphicsObject object;
+  object.name = "trail";
+  object.frame = dspace::RootFrame;
+  object.lineWidth = 4.0;
+  auto green = std::make_shared<dspace::Material>();
+  green->color = {0.0, 1.0, 0.0};
+  object.material.lit = false;
+  object.levels = {dspace::DetailLevel{
+      {dspace::Part{std::make_shared<const dspace::Mesh>(std::move(line)), green}}}};
+  scene->AddObject(std::move(object));
+  const auto viewport = View("front");
+  viewport->SetSamples(2);
+  ViewportWidget widget(viewport, nullptr, Path());
+  QSignalSpy failures(&widget, &ViewportWidget::failed);
+  widget.resize(320, 240);
+  widget.show();
+  ASSERT_TRUE(Wait(widget));
+  EXPECT_EQ(failures.count(), 0) << failures.value(0).value(0).toString().toStdString();
+  const QImage picture = widget.grab().toImage();
+  int most = 0;
+  for (int x = 0; x < picture.width(); ++x) {
+    int greens = 0;
+    for (int y = 0; y < picture.height(); ++y) {
+      const QColor color = picture.pixelColor(x, y);
+      greens += color.green() > 2 * color.red() && color.green() > 2 * color.blue() ? 1 : 0;
+    }
+    most = std::max(most, greens);
+  }
+  EXPECT_GE(most, 3);
+  EXPECT_LE(most, 6);
+}
+
+TEST_P(WidgetTest, MakesTheViewportsOfASceneItself) {
+  auto front = std::make_unique<ViewportWidget>(scene, "front");
+  auto side = std::make_unique<ViewportWidget>(scene, "side");
+  for (ViewportWidget* widget : {front.get(), side.get()}) {
+    widget->resize(320, 240);
+    widget->show();
+    ASSERT_TRUE(Wait(*widget));
+    EXPECT_EQ(Differing(*widget), 0);
+  }
+  front.reset();
+  const int before = side->ShownPictures();
+  dspace::Camera camera = scene->Vantage("main").GetCamera("side");
+  camera.mount.X_FC = dspace::LookAt("side", {-2, -4, 3}, {0, 0, 0}, {0, 0, 1});
+  scene->SetCamera("main", camera);
+  ASSERT_TRUE(Wait(*side, before + 1)); // the other goes on
+  side.reset();
+  const ViewportWidget again(scene, "front"); // in a new context
+  EXPECT_THROW(ViewportWidget(scene, "none"), dspace::Error);
+}

@@ -15,6 +15,8 @@ QSurfaceFormat Format() {
   format.setRenderableType(QSurfaceFormat::OpenGL);
   format.setProfile(QSurfaceFormat::CoreProfile);
   format.setVersion(4, 5);
+  // Else Qt's context is forward-compatible, where lines of more than one pixel are errors.
+  format.setOption(QSurfaceFormat::DeprecatedFunctions);
   if (qEnvironmentVariable("DSPACE_OPENGL_DEBUG") == "1") {
     format.setOption(QSurfaceFormat::DebugContext);
   }

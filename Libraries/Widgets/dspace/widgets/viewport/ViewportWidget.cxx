@@ -15,12 +15,15 @@
 #include <QTimer>
 #include <QWheelEvent>
 
+#include "vtkDspaceRenderContext.h"
 #include "vtkDspaceViewport.h"
 #include "vtkSmartPointer.h"
+#include "vtkWeakPointer.h"
 
 #include <dspace/scene/Scene.h>
 #include <dspace/scene/controls/OrbitController.h>
 #include <dspace/widgets/viewport/PictureSurface.h>
+#include <dspace/widgets/viewport/QtContext.h>
 
 namespace dspace::widgets {
 namespace {
@@ -140,6 +143,29 @@ void MoveCamera(OrbitController& controller, vtkDspaceViewport& viewport,
   if (result.changed) {
     scene.SetCamera(vantage, result.camera);
   }
+}
+
+// One for all widgets that make their viewports.
+vtkSmartPointer<vtkDspaceRenderContext> SharedContext() {
+  static vtkWeakPointer<vtkDspaceRenderContext> shared;
+  vtkSmartPointer<vtkDspaceRenderContext> context = shared.Get();
+  if (!context) {
+    context = vtkSmartPointer<vtkDspaceRenderContext>::New();
+    context->Initialize(MakeQtContext());
+    shared = context;
+  }
+  return context;
+}
+
+vtkSmartPointer<vtkDspaceViewport> ViewportOf(std::shared_ptr<Scene> scene,
+                                              const std::string& camera) {
+  constexpr int Width = 640, Height = 400; // until it is shown
+  const char* const vantage = "main";
+  scene->Vantage(vantage).GetCamera(camera); // throws
+  const auto viewport = vtkSmartPointer<vtkDspaceViewport>::New();
+  viewport->Initialize(SharedContext(), std::move(scene), camera, vantage, Width, Height);
+  viewport->SetCamera(camera);
+  return viewport;
 }
 
 } // namespace
@@ -336,6 +362,10 @@ ViewportWidget::ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent, Pic
   connect(&self.settle, &QTimer::timeout, this, [this] { this->Impl_->Settled(); });
   connect(&self.ticks, &QTimer::timeout, this, [this] { this->Impl_->Look(); });
 }
+
+ViewportWidget::ViewportWidget(std::shared_ptr<Scene> scene, const std::string& camera,
+                               QWidget* parent)
+    : ViewportWidget(ViewportOf(std::move(scene), camera), parent) {}
 
 ViewportWidget::~ViewportWidget() {
   this->Impl_->Settled();

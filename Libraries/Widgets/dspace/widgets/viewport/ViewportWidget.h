@@ -10,6 +10,10 @@
 
 class vtkDspaceViewport;
 
+namespace dspace {
+class Scene;
+}
+
 namespace dspace::widgets {
 
 // One event of a widget, in the viewport's pixels: the fields of v1::ViewportEvent.
@@ -54,6 +58,12 @@ public:
   // With a render context that is not of MakeQtContext(), Texture means Memory.
   explicit ViewportWidget(vtkDspaceViewport* viewport, QWidget* parent = nullptr,
                           PicturePath path = PicturePath::Fastest);
+  // Makes the viewport of a scene too: through a camera of the vantage "main" (Staging.h makes
+  // one), in a render context that all such widgets share while one of them lives, with pictures on
+  // the GPU where that is faster. Throws Error: NotFound without such a camera, Resource for what
+  // MakeQtContext() rejects.
+  ViewportWidget(std::shared_ptr<Scene> scene, const std::string& camera,
+                 QWidget* parent = nullptr);
   ~ViewportWidget() override;
 
   void SetHandler(Handler handler);
