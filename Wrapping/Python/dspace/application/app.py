@@ -24,12 +24,30 @@ RASTERS = (".tif", ".tiff", ".img", ".lbl", ".cub", ".vrt", ".asc", ".dem", ".hg
 SIZE = (640, 400)  # of a viewport until its widget has one
 
 
-class App:
-    """The program that the prompt belongs to.
+def _compiled(path):
+    """The code of a script. Raises dspace.Corrupt for what is no text, and SyntaxError."""
+    try:
+        return compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec")
+    except ValueError as error:  # no UTF-8, or null bytes
+        raise errors.Corrupt(f"script {path!r}: {error}", f"script {path!r}") from None
 
-    session, scene: where files are opened. views: the viewports of its windows, by name. runs:
-    the recordings that were opened, as dspace.application.run.Run. plots: the plots that were made, by number. links: the
-    servers, as dspace.application.link.Link. measured: what measure() returned last; None before."""
+
+class App:
+    """The program that the prompt belongs to: `app` in the Python dock, in scripts, and in plug-ins.
+
+    session, scene: the dspace.Session of the window and its scene, where files are opened.
+    views: the dspace.Viewports that are shown, by name.
+    runs: the recordings that are open, as dspace.application.run.Run.
+    links: the servers, as dspace.application.link.Link.
+    plots: the plots that were made, by number, as dspace.application.plots.Plot.
+    exports: movies that are being made, as dspace.application.export.Export.
+    map_links: maps in step with views, as dspace.application.views.MapLink.
+    measured: what measure() returned last; None before.
+    layouts: the named layouts, as dspace.application.layouts.Layouts.
+    plugins: the plug-ins; plugins.loaded has their modules by name.
+
+    Its methods belong into the thread of the windows, as all of Python there. Those that read files let the windows live
+    meanwhile."""
 
     def __init__(self, host):
         self._host = host
@@ -62,7 +80,10 @@ class App:
         return self.views.get(name, self._latest)
 
     def show(self, viewport, title=None):
-        """Shows a viewport in the window. Returns it."""
+        """Shows a viewport in a dock of the window, and gives it the focus. One that is shown comes to the front.
+
+        viewport: a dspace.Viewport of this session, of a Run or of a Link. title: of the dock (default: the viewport's name).
+        Returns the viewport, which `views` has by its name."""
         client = viewport._client
         self._host.show(client.shown(), viewport.name, viewport.name if title is None else text(title, "the title"))
         self.views[viewport.name] = self._latest = viewport
@@ -70,9 +91,12 @@ class App:
         return viewport
 
     def new_view(self, camera=None, title=None, name=None):
-        """A new viewport of the scene with a camera of its own, or with the given one; shown. Where the present view is of a
-        recording or a server and nothing is given, the new one is of the same scene and looks as that one does. name: by default
-        the next free one of "view 1", "view 2", ..."""
+        """Adds a viewport of the scene and shows it. Returns the dspace.Viewport.
+
+        camera: a dspace.Camera; default: a new one that stands where that of the present view stands. title: of the dock
+        (default: the name). name: of the viewport (default: the next free one of "view 1", "view 2", ...). Where the present view
+        is of a recording or a server and nothing is given, the new one is of the same scene and looks as that one does.
+        Raises dspace.AlreadyExists for a name that is taken."""
         present = self.view
         if camera is None and name is None and present is not None and present._client is not self.session._client:
             return self.show(views.copy(self, present), title)
@@ -90,8 +114,10 @@ class App:
         return self.show(made, title)
 
     def set_view_defaults(self, samples=2, navigation="orbit"):
-        """What new_view() gives views from now on: samples a pixel along each side (1 to 8), and how input moves the
-        camera (Viewport.navigation)."""
+        """What new_view() gives views from now on.
+
+        samples: a pixel along each side, 1 to 8. navigation: how input moves the camera, "orbit", "walk" or "map"
+        (Viewport.navigation). Raises dspace.InvalidArgument."""
         if not 1 <= integer(samples, "samples", "new views") <= 8:
             reject("new views", "samples", samples, "1 to 8")
         word(navigation, NAVIGATION, "navigation", "new views")
@@ -107,17 +133,19 @@ class App:
         return self.scene.add_camera(name, eye=(6, -8, 5), target=(0, 0, 0))
 
     def act(self, action, frame="/", object=None):
-        """Does what the menu of the scene tree does, in the scene in the docks: "chase" or "focus" (with its camera "main"),
-        "show" or "hide" (all objects on a frame and below), "trail" or "axes" (adds them, or removes them).
+        """Does what the menu of the scene tree does, in the scene in the docks.
 
-        frame: its path. object: the name or id of an object on this frame; None: the frame. Raises dspace.NotFound for one that
-        is not there."""
+        action: "chase" or "focus" (with the scene's camera "main"), "show" or "hide" (all objects on the frame and below), "trail"
+        or "axes" (adds them, or removes them where they are). frame: its path, such as "rover/mast"; "/": the root. object: the
+        name or id of an object on this frame; None: the frame itself. Raises dspace.NotFound for a frame or object that is not
+        there, dspace.InvalidArgument for another action."""
         number_or_name = object if object is None or isinstance(object, str) else integer(object, "the object", "act")
         self._host.extend(json.dumps({"do": "tree", "action": text(action, "the action", "act"),
                                       "frame": text(frame, "the frame", "act"), "object": number_or_name}))
 
     def close_view(self, viewport):
-        """Closes the view and removes its viewport."""
+        """Closes a view and removes its viewport from the session, with the camera that new_view() made for it. Maps in step
+        with it become views of their own. viewport: one of `views`."""
         for link in [link for link in self.map_links if viewport in (link.map, link.view)]:
             link.close()
         self._host.close(viewport._client.shown(), viewport.name)
@@ -133,7 +161,8 @@ class App:
                 pass
 
     def show_dialog(self, name):
-        """Opens the dialog "preferences", "guide", "keys", "messages" or "about"; nothing waits for it."""
+        """Opens a dialog, "preferences", "guide", "keys", "messages" or "about", and returns at once. Raises
+        dspace.InvalidArgument for another name."""
         layouts.show_dialog(self._host, name)
 
     def show_dock(self, name):
@@ -142,11 +171,14 @@ class App:
         layouts.show_dock(self._host, name)
 
     def set_theme(self, name):
-        """The colours of all windows, also at the next start: "system", "dark" or "light"."""
+        """Sets the colours of all windows, also at the next start: "system" (those of the desktop), "dark" or "light". Raises
+        dspace.InvalidArgument for another name."""
         layouts.set_theme(self._host, name)
 
     def split_view(self, view=None, side="right"):
-        """A new view that looks as `view` (default: App.view) does, "right" of it or "below" it."""
+        """Adds a view beside another one, which looks as that one does, with a camera of its own. Returns its viewport.
+
+        view: default: App.view. side: "right" or "below". Raises dspace.NotFound without a camera in the view."""
         view = self._one(view)
         made = views.copy(self, view)
         self.show(made)
@@ -154,34 +186,41 @@ class App:
         return made
 
     def maximize_view(self, view=None):
-        """Gives a view the whole window; restore_views() brings the docks back."""
+        """Gives a view (default: App.view) the whole window. restore_views() brings the docks back."""
         self._arrange("maximize", self._one(view))
 
     def restore_views(self):
-        """All docks are as they were before maximize_view()."""
+        """Puts all docks where they were before maximize_view(); nothing happens without it."""
         self._arrange("restore")
 
     def tile_views(self):
-        """Puts the docks of all views into a grid."""
+        """Puts the docks of all views into a grid of equal cells. Floating ones stay where they are."""
         self._arrange("tile")
 
     def copy_picture(self, view=None):
-        """Copies a view's picture to the clipboard."""
+        """Copies the picture of a view (default: App.view) to the clipboard, at the size at which it is shown, without
+        overlays."""
         self._arrange("copy", self._one(view))
 
     def fit(self, view=None, things=None):
-        """Fills a view with objects or frames (default: all that is visible), without turning its camera. A view of a
-        recording or a server gets a camera of its own, and so in chase()."""
+        """Fills a view with things, without turning its camera.
+
+        view: default: App.view. things: objects, frames, or a list of them; default: all that is visible. A view of a recording
+        or a server gets a camera of its own, and so in chase(). Raises dspace.NotFound where nothing has a size."""
         views.fit(self._one(view), things)
 
     def chase(self, view=None, frame=None, distance=None):
-        """Lets the camera of a view follow a frame from behind, at `distance` [m] (default: three and a half times the
-        size of what is on it). Without a frame it stands still where it is."""
+        """Lets the camera of a view follow a frame from behind.
+
+        view: default: App.view. frame: a dspace.Frame or its path; None: the camera stands still where it is. distance [m]:
+        default: so far away that what is on the frame fills the picture. Raises dspace.NotFound for a path that is not there."""
         views.chase(self._one(view), frame, distance)
 
     def open_map(self, view=None):
-        """A new view from above, orthographic and north up, kept in step with `view`. Returns a
-        dspace.application.views.MapLink, whose close() ends that."""
+        """Adds a view from above, orthographic and north up, right of another one and in step with it.
+
+        view: default: App.view. Returns a dspace.application.views.MapLink: its `map` is the new viewport, and its close() ends
+        the step; the map stays."""
         view = self._one(view)
         made = views.copy(self, view)
         link = self.link_map(made, view)
@@ -190,8 +229,11 @@ class App:
         return link
 
     def link_map(self, map_view, view):
-        """Makes a view a map and keeps it in step with another one of its scene: it follows where the other one looks, and
-        a pan of the map moves the other one. Returns a dspace.application.views.MapLink."""
+        """Makes a view a map and keeps it in step with another one: it follows where the other one looks, and a pan of the map
+        moves the other one along the ground.
+
+        map_view, view: two views of one scene, else dspace.InvalidArgument. Returns a dspace.application.views.MapLink, whose
+        close() ends that. A map that was in step with another view no longer is."""
         for link in [link for link in self.map_links if link.map == map_view]:
             link.close()
         link = views.MapLink(self, map_view, view)
@@ -225,38 +267,62 @@ class App:
     # --- Plug-ins ------------------------------------------------------------------------------
 
     def add_dock(self, title, area="right"):
-        """A new dock for values and controls, as a dspace.application.plugins.Panel. area: "left", "right", "top",
-        "bottom"."""
+        """Adds a dock for values and controls.
+
+        title: of its bar. area: where it is at first, "left", "right", "top" or "bottom"; a saved layout comes before it. Returns
+        a dspace.application.plugins.Panel, which is empty; its close() removes the dock. Raises dspace.InvalidArgument for
+        another area."""
         return self.plugins.add_dock(title, area)
 
     def add_action(self, menu, text, function, key="", tip=""):
-        """A new entry of a menu, which is made if there is none; it calls function(). key: such as "F6"."""
+        """Adds an entry to a menu; it calls function().
+
+        menu: the menu's title, such as "Mission"; it is made if there is none. text: of the entry; "&" stands before the letter
+        for Alt. key: one that does the same anywhere in the window, such as "F6" or "Ctrl+Shift+D"; "": none. tip: the entry's
+        tool tip (default: the text). What the function raises is reported in the Python dock, and the window goes on. Raises dspace.WrongType
+        for a function that cannot be called, dspace.InvalidArgument for a key that is none or is taken."""
         self.plugins.add_action(menu, text, function, key, tip)
 
     def on_key(self, key, function):
-        """Calls function() when the key is pressed anywhere in the window: "F7", "Ctrl+Shift+D"."""
+        """Calls function() when a key is pressed anywhere in the window.
+
+        key: such as "F7" or "Ctrl+Shift+D". What the function raises is reported in the Python dock. Viewport.on_key() hears the
+        keys of one view. Raises dspace.WrongType for a function that cannot be called, dspace.InvalidArgument for a key that
+        is none or is taken."""
         self.plugins.on_key(key, function)
 
     def add_overlay(self, view=None):
-        """Texts, lines and circles over the pictures of a view (default: of all views), as a
-        dspace.application.overlays.Overlay. Captures and movies do not have them."""
+        """Adds a layer of texts, lines and circles over pictures.
+
+        view: over which; default: over all views, also over later ones. Returns a dspace.application.overlays.Overlay, which is
+        empty; its close() removes it. Captures and movies do not have overlays."""
         return Overlay(self.plugins._ask, None if view is None else views.required(view))
 
     def add_read_out(self, name, text="", tip=""):
-        """A value in the status bar, "name text", as a dspace.application.plugins.ReadOut."""
+        """Adds a value to the status bar, as "name text".
+
+        text: the value, which ReadOut.set(text=, state=) changes. tip: its tool tip (default: the name).
+        Returns a dspace.application.plugins.ReadOut; its close() removes it. Raises dspace.AlreadyExists for a name that is
+        there."""
         return self.plugins.add_read_out(name, text, tip)
 
     def load_plugin(self, name):
-        """Loads a Python file or module and calls its plugin(app). Returns the module."""
+        """Loads a plug-in: imports a Python file or module and calls its plugin(app), or loads a library (.so) of C++.
+
+        name: a path that ends with ".py" or ".so", or the name of a module. Returns the module; None for a library. Raises
+        dspace.NotFound for one that is not there, dspace.InvalidArgument for one without plugin(app) or of another version,
+        and what plugin(app) raises."""
         return self.plugins.load(name, self)
 
     # --- Telemetry -----------------------------------------------------------------------------
 
     def plot(self, *channels, of=None, title=None):
-        """A new plot of channels of telemetry against time, in a dock; without any, an empty one to drag channels into.
+        """Adds a plot of channels of telemetry against time, in a dock; without any, an empty one to drag channels into.
 
-        of: a Run, whose whole recording is plotted, or a dspace.Scene, whose values are plotted from now on; by default
-        the one in the docks. Returns a dspace.application.plots.Plot."""
+        channels: names. of: a Run, whose whole recording is plotted, or a dspace.Scene, whose values are plotted from now on; by
+        default the one in the docks. title: of the dock (default: the names of up to two channels, or the first and how many more).
+        Returns a dspace.application.plots.Plot, whose add() adds channels. Raises dspace.NotFound for a
+        channel that is not there, dspace.InvalidArgument for one of texts."""
         made = Plot(self._host, self._plotted(of), channels, title)
         self.plots[made.number] = made
         return made
@@ -285,8 +351,10 @@ class App:
 
     def answer(self, question, text):
         """Answers an open question of the scene in the docks (scene.ask), and returns at once: the simulation of this
-        window, or that of a server, hears it. Raises dspace.NotFound if the server has no simulation,
-        dspace.Unsupported for a recording."""
+        window, or that of a server, hears it.
+
+        question: its name. text: one of its choices, or any text if it has none. Raises dspace.NotFound if the server has no
+        simulation, dspace.Unsupported for a recording."""
         self._send(f"question {question!r}", lambda session, scene: session.answer(question, text))
 
     def send_goal(self, position, goal="goal"):
@@ -299,7 +367,7 @@ class App:
         """Calls `send` with the session, or Link, and the name of the scene in the docks."""
         shown, scene = self._host.active()
         if any(run._player is shown for run in self.runs):
-            raise errors.Unsupported("nobody hears what is sent to a recording; accepted: a live scene or a server",
+            raise errors.Unsupported(f"{about}: nobody hears what is sent to a recording; accepted: a live scene or a server",
                                      about)
         for link in self.links:
             if link._client.shown() is shown:
@@ -318,7 +386,7 @@ class App:
         for run in self.runs:
             if run._player is shown:
                 return run.movie
-        raise errors.NotFound("the scene in the docks is no recording; accepted: one opened by app.open()", "movie")
+        raise errors.NotFound("movie: the scene in the docks is no recording; accepted: one opened by app.open()", "movie")
 
     def export_movie(self, out, movie=None, size=None, rate=None, samples=None, jobs=1):
         """Makes a movie in a process of its own and returns at once, with a dspace.application.export.Export.
@@ -343,14 +411,17 @@ class App:
     def open(self, path):
         """Opens a model, robot, raster of heights, recording, or runs a Python script in the prompt's name space.
 
-        Returns what it made: an object, Robot, Terrain or Run (a dspace.Playback); None for a script."""
+        path: a file, whose ending says what it is (Documentation/Formats.md), or the folder of a frames.json. Other threads read
+        it, and the windows live meanwhile. Returns what it made: an object, Robot, Terrain or Run (a dspace.Playback); None for a
+        script. Raises dspace.NotFound, dspace.Unsupported, dspace.Corrupt or dspace.Io with the file's name, dspace.Resource
+        if the user cancels, and what a script raises; then nothing has changed, but for what the script did."""
         path = os.path.abspath(os.fspath(path))
         name = os.path.basename(path).lower()
         if not os.path.exists(path):
-            raise errors.NotFound("there is no such file", f"file {path!r}")
+            raise errors.NotFound(f"file {path!r}: there is no such file", f"file {path!r}")
         if name.endswith(".py"):
             import __main__
-            exec(compile(pathlib.Path(path).read_text(encoding="utf-8"), path, "exec"), __main__.__dict__)
+            exec(_compiled(path), __main__.__dict__)
             return None
         if name.endswith(".dspace"):
             return self._open_run(path)
@@ -360,8 +431,8 @@ class App:
             return made
         if name.endswith(RASTERS):
             return self._open_terrain(path)
-        raise errors.Unsupported(f"its name says no format; accepted: {' '.join(MODELS + RASTERS)} .dspace .py",
-                                 f"file {path!r}")
+        about = f"file {path!r}"
+        raise errors.Unsupported(f"{about}: its name says no format; accepted: {' '.join(MODELS + RASTERS)} .dspace .py", about)
 
     def _load(self, path):
         """As Scene.load; a robot whose name is taken is numbered by its file's name: "rover 2"."""
@@ -432,15 +503,19 @@ class App:
             self._latest = next(reversed(self.views.values()), None)
 
     def demo(self):
-        """The scene of the first start: a rover drives over the shipped field."""
+        """Adds the scene of the first start: a rover drives over the shipped field, in two views. Returns a
+        dspace.application.demo.Drive, whose stop() ends it."""
         from dspace.application.demo import Drive
         return Drive(self)
 
     # --- Servers -------------------------------------------------------------------------------
 
     def connect(self, address, certificate=None, key=None, authority=None, insecure=False):
-        """Shows the scene of a server (`dspace serve`), drawn here. Returns a Link at once; it connects, and connects
-        again after a loss, by itself. The arguments are those of dspace.connect."""
+        """Shows the scene of a server (`dspace serve`), drawn here.
+
+        address: "HOST:PORT" or "unix:PATH". certificate, key, authority, insecure: as of dspace.connect. Returns a
+        dspace.application.link.Link at once; it connects, and connects again after a loss, by itself. Link.state tells how it
+        stands, and the status bar shows it. Raises dspace.InvalidArgument for an empty address."""
         address = required_address(address, "connect")
         link = Link(self, address, (certificate, key, authority, insecure))
         self.links.append(link)
@@ -493,7 +568,7 @@ class App:
         return number
 
     def cancel(self, number):
-        """Ends what every() began; nothing happens if it has ended."""
+        """Ends what every() began. number: what every() returned; nothing happens if it has ended."""
         self._timers.discard(number)
         self._host.cancel(number)
 
@@ -510,6 +585,7 @@ class App:
         client.inputs.tell(viewport, command.viewport_event, client.finish(command, to_reply(reply)))
 
     def close(self):
+        """Ends timers, exports, recordings, links and servers, and the session. The program calls it when the window closes."""
         for number in list(self._timers):
             self.cancel(number)
         for each in (*self.exports, *self.runs, *self.links):

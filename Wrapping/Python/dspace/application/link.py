@@ -176,7 +176,7 @@ class ServerApart:
             return line[len(LISTENING):]
         if self._process.poll() is not None:
             words = os.fsdecode(self._process.stderr.read() or b"").strip().splitlines()
-            raise Io(words[-1] if words else "the server process did not start", "server")
+            raise Io(f"server: {words[-1] if words else 'its process did not start'}", "server")
         return None
 
     def end(self):
