@@ -248,6 +248,16 @@ def test_a_polar_raster_on_its_body(scene, tmp_path):
     assert abs(flat.elevation_deg[2] - stated[0][1]) > 0.2
 
 
+def test_fast_horizon_maps(scene, ground, tmp_path, refused):
+    exact = scene.horizon_map(ground, tmp_path / "exact.tif", azimuths=8, height=2.0)
+    fast = scene.horizon_map(ground, tmp_path / "fast.tif", azimuths=8, height=2.0, fast=True)
+    assert (exact.metadata["DSPACE_FAST"], fast.metadata["DSPACE_FAST"]) == ("no", "yes")
+    errors = np.abs([exact.read(band) - fast.read(band) for band in exact.bands])
+    assert 0.0 < np.nanmedian(errors) < 0.05  # of ground much steeper than half a degree is promised for: TestHorizonMap has that
+    with refused(dspace.WrongType, "fast is 1"):
+        scene.horizon_map(ground, tmp_path / "x.tif", fast=1)
+
+
 @pytest.mark.parametrize("change, kind, text", [
     ({"height": -1.0}, dspace.InvalidArgument, "height is -1"),
     ({"azimuths": 0}, dspace.InvalidArgument, "azimuths is 0; accepted: 1 to 3600"),

@@ -1,6 +1,7 @@
 // The loops of the sweep against the formula, to the bit.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -77,4 +78,53 @@ TEST_P(HorizonKernelTest, EdgesRaiseTangentsAsTheFormulaDoes) {
   EXPECT_LT(raised, 10 * HorizonLanes); // most steps raise none
   EXPECT_EQ(tangents, expected);
   EXPECT_EQ(tangents[5], -1e6f);
+}
+
+TEST_P(HorizonKernelTest, TheFastOnesDoSoToTheGroundsHeightOverItsDistance) {
+  std::vector<float> exact(HorizonLanes, -1e6f);
+  std::vector<float> fast = exact;
+  MarchEdges(this->steps, this->heights.data(), this->z.data(), exact.data());
+  for (EdgeStep& step : this->steps) {
+    step.ground.spread = 0.0f;
+  }
+  std::vector<float> level(HorizonLanes, -1e6f);
+  MarchEdges(this->steps, this->heights.data(), this->z.data(), level.data());
+  MarchEdgesFast(this->steps, this->heights.data(), this->z.data(), fast.data());
+  for (std::size_t i = 0; i < fast.size(); ++i) {
+    EXPECT_NEAR(fast[i], level[i], 1e-5f * std::max(1.0f, std::abs(level[i]))) << i;
+  }
+  EXPECT_EQ(fast[5], -1e6f);
+}
+
+TEST(HorizonKernel, ElevationsAreArcTangents) {
+  std::vector<float> tangents = {0.0f, -1e6f, std::numeric_limits<float>::quiet_NaN()};
+  for (float t = 1e-6f; t < 1e6f; t *= 1.07f) {
+    tangents.push_back(t);
+    tangents.push_back(-t);
+  }
+  std::vector<float> found(tangents.size());
+  ElevationsOf(tangents.data(), int(tangents.size()), -1e6f, -90.0f, found.data());
+  EXPECT_EQ(found[0], 0.0f);
+  EXPECT_EQ(found[1], -90.0f);
+  EXPECT_TRUE(std::isnan(found[2]));
+  for (std::size_t i = 3; i < tangents.size(); ++i) {
+    EXPECT_NEAR(found[i], std::atan(double(tangents[i])) * 180.0 / M_PI, 2e-5) << tangents[i];
+  }
+}
+
+TEST(HorizonKernel, LanesMayBeRaised) {
+  std::vector<float> z(HorizonLanes, 10.0f);
+  std::vector<float> tangents(HorizonLanes, 0.5f);
+  z[63] = 9.0f; // up by 6 at 10 to 20 m: 0.6 at most
+  tangents[63] = 0.55f;
+  EXPECT_TRUE(MayRaiseLanes(15.0f, 0.1f, 0.05f, 0.0f, z.data(), tangents.data()));
+  EXPECT_FALSE(MayRaiseLanes(15.0f, 0.1f, 0.05f, 0.06f, z.data(), tangents.data()));
+  // Lower ground is highest where it is farthest.
+  tangents.assign(HorizonLanes, -0.3f);
+  EXPECT_TRUE(MayRaiseLanes(5.0f, 0.1f, 0.05f, 0.0f, z.data(), tangents.data()));
+  tangents.assign(HorizonLanes, -0.15f);
+  EXPECT_FALSE(MayRaiseLanes(5.0f, 0.1f, 0.05f, 0.0f, z.data(), tangents.data()));
+  EXPECT_EQ(LeastOf(tangents), -0.15f);
+  tangents[40] = -2.0f;
+  EXPECT_EQ(LeastOf(tangents), -2.0f);
 }

@@ -46,6 +46,38 @@ TEST(HorizonMap, APlaneAgreesWithRays) {
   }
 }
 
+// Slopes of up to 0.3: half a degree; and no map is both.
+TEST(HorizonMap, TheFastModeAgreesToHalfADegree) {
+  const TemporaryFolder folder;
+  const double metres = 1737400.0 * Degree;
+  const auto terrain = OnBody(WriteDegrees(
+      folder, "hills.tif", 1737400.0, 400, 300, 30.0, 25.0, 0.008, [&](double lon, double lat) {
+        return Hills(lon * metres * 0.93, lat * metres, 2000.0, 60000.0, 0.08);
+      }));
+  const MapGround ground = MapGroundOf(*terrain);
+  HorizonMapOptions options;
+  options.cells = FindCells(ground, std::array<double, 4>{31.0, 24.0, 31.6, 23.5}, 0.0);
+  options.height = 2.0;
+  options.azimuths = 36;
+  options.fast = true;
+  const std::string path = (folder.Path() / "fast.tif").string();
+  const HorizonMap fast = Written(ground, options, path);
+  EXPECT_TRUE(fast.Fast());
+  const std::vector<double> errors = ErrorsOf(fast, ground, options.cells, *terrain, 150, 9);
+  std::printf("fast: median %.2e, 99.9 %% %.2e, most %.2e deg of %zu\n", Share(errors, 0.5),
+              Share(errors, 0.999), errors.back(), errors.size());
+  EXPECT_LE(Share(errors, 0.5), 0.05);
+  EXPECT_LE(Share(errors, 0.999), 0.5);
+  EXPECT_GT(Share(errors, 0.999), 0.01); // it is another one than the exact
+  options.fast = false;
+  options.parts = {path};
+  EXPECT_THROW(WriteHorizonMap(ground, options, (folder.Path() / "exact.tif").string()), Error);
+  options.parts.clear();
+  const HorizonMap exact = Written(ground, options, (folder.Path() / "exact.tif").string());
+  EXPECT_FALSE(exact.Fast());
+  EXPECT_NE(exact.InputHash(), fast.InputHash());
+}
+
 TEST(HorizonMap, ABodyAgreesWithRays) {
   const TemporaryFolder folder;
   const double metres = 1737400.0 * Degree;

@@ -38,9 +38,20 @@ struct CellStep {
 // Raise `tangents` of HorizonLanes posts of heights `z` to those of the steps. NaN is no ground.
 void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
                 float* tangents);
+// The same to 1e-5 of the tangents: the distance of ground does not grow with its height.
+void MarchEdgesFast(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
+                    float* tangents);
 // `width`: of a row of heights.
 void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
                 float lane, const float* z, float* tangents);
+
+// Whether ground of height `crest` at distances of 1 / over to 1 / under may raise one of
+// HorizonLanes posts by more than `slack`.
+bool MayRaiseLanes(float crest, float over, float under, float slack, const float* z,
+                   const float* tangents);
+float LeastOf(const std::vector<float>& values);
+// Elevations [deg] of tangents; `none` of those that are `noTangent`, NaN of NaN. To 2e-5 degrees.
+void ElevationsOf(const float* tangents, int count, float noTangent, float none, float* elevations);
 
 // Least and greatest, without NaN; least > greatest if there are none.
 struct HeightSpan {

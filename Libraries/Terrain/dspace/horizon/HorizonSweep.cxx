@@ -64,6 +64,8 @@ public:
         double(this->Lattice_.RowPlace(block.level,
                                        block.row + std::int64_t(block.height / 2) * every)));
     this->Cell_ = this->Placement_.CellSize(middle);
+    this->Metres_ = this->MetresOf(block.level);
+    this->Slack_ = sweep.Options().fast ? HorizonOptions::FastSlack : 0.0f;
     for (int j = 0; j < block.height; ++j) {
       this->Starts_.emplace_back(
           double(this->Lattice_.ColumnPlace(block.level, block.column)),
@@ -210,18 +212,19 @@ private:
 
   // Whether the terrain's greatest height could not raise any post's horizon from there on.
   bool NothingHigherFrom(double s) const {
-    const float least = *std::min_element(this->Tangents_.begin(), this->Tangents_.end());
-    if (least == HorizonSweep::None) {
+    const float low = LeastOf(this->Tangents_);
+    if (low == HorizonSweep::None) {
       return false;
     }
+    const double least = double(low) + this->Slack_;
     const double high = std::max<double>(this->Sweep_.Options().heights[1], this->Greatest_);
     if (!this->Placement_.OnBody()) {
-      return (high - this->Least_) / s <= double(least);
+      return (high - this->Least_) / s <= least;
     }
     // (cos a - k) / sin a falls with the distance for k < 1, else from cos a = 1 / k on.
     const double k = (this->Flattest_ + this->Least_) / (this->Flattest_ + high);
     const double angle = s / this->Flattest_;
-    return (std::cos(angle) - k) / std::sin(angle) <= double(least);
+    return (std::cos(angle) - k) / std::sin(angle) <= least;
   }
 
   // Places of the path of row j's first lane from s0 to s1 [m], in posts of the level.
@@ -396,14 +399,9 @@ private:
     const auto over = float(1.0000005 / std::max(least, 1e-9));
     const auto under = float(0.9999995 / most);
     const auto crest = float(top);
-    const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
-    const float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
-    bool may = false;
-    for (int i = 0; i < HorizonLanes; ++i) {
-      const float up = crest - z[i];
-      may |= (up > 0.0f ? up * over : up * under) > tangents[i];
-    }
-    return may;
+    return MayRaiseLanes(crest, over, under, this->Slack_,
+                         &this->Heights_[std::size_t(j) * HorizonLanes],
+                         &this->Tangents_[std::size_t(j) * HorizonLanes]);
   }
 
   // A place at a time, of which all lanes are read: where columns crowd.
@@ -490,7 +488,8 @@ private:
       const std::ptrdiff_t shift =
           regular ? ground.At(ground.place.column, row) - ground.At(ground.place.column, *edgesRow)
                   : 0;
-      MarchEdges(edges, ground.Heights() + shift, z, tangents);
+      (this->Sweep_.Options().fast ? MarchEdgesFast : MarchEdges)(edges, ground.Heights() + shift,
+                                                                  z, tangents);
       this->Report_.steps += edges.size() * HorizonLanes;
     }
     return true;
@@ -509,6 +508,10 @@ private:
       const auto add = [&](double t, std::int64_t c, std::int64_t r, int right, int down,
                            double share) {
         if (a.s + t * (b.s - a.s) < least) {
+          return;
+        }
+        if (this->Sweep_.Options().fast &&
+            !this->Counts(a.s + t * (b.s - a.s), std::abs(dx) >= std::abs(dy), c, r, right, down)) {
           return;
         }
         // The other end may lie outside the data: on a post it does not count.
@@ -534,6 +537,23 @@ private:
       }
       ForEachCrossing(a.x, a.y, b.x, b.y, add);
     }
+  }
+
+  // With HorizonOptions::fast: whether an edge that is crossed at a distance [m] counts. Of distant
+  // ones only those between columns, or between rows, that lie steps apart. `across`: columns.
+  bool Counts(double s, bool across, std::int64_t c, std::int64_t r, int right, int down) const {
+    const double posts = s / (HorizonOptions::FastExact * this->Metres_);
+    if (posts < 1.0) {
+      return true;
+    }
+    if (across ? right != 0 : down != 0) {
+      return false;
+    }
+    std::int64_t step = 1;
+    while (2.0 * double(step) <= posts) {
+      step *= 2;
+    }
+    return ((across ? c : r) & (step - 1)) == 0;
   }
 
   // Places of a row on a coarser level.
@@ -572,6 +592,8 @@ private:
   double Spacing_ = 1.0; // level-0 posts between lanes
   double Lane_ = 0.0;    // from the first to the one whose path is followed
   double Cell_ = 1.0;    // [m] of level 0
+  double Metres_ = 1.0;  // [m] of the block's level
+  float Slack_ = 0.0f;   // of tangents
   double Bend_ = 0.0;
   double Flattest_ = 0.0;
   std::vector<Eigen::Vector2d> Starts_; // the first post of each row, level-0 posts

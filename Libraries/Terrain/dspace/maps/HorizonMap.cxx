@@ -15,13 +15,14 @@
 
 #include <dspace/Checks.h>
 #include <dspace/gdal/GdalErrors.h>
+#include <dspace/horizon/HorizonKernel.h>
 #include <dspace/horizon/HorizonSweep.h>
 
 namespace dspace {
 namespace {
 
 // Of the numbers in the file; a change of the method changes it, so that no map is a mix of two.
-constexpr int HorizonMapVersion = 1;
+constexpr int HorizonMapVersion = 2;
 constexpr int FollowedPosts = 4096;
 constexpr int MostAzimuths = 3600;
 constexpr std::int64_t MostHeld = std::int64_t(1) << 27; // posts, 512 MB
@@ -113,6 +114,7 @@ TileFileLayout LayoutOf(const MapGround& ground, const HorizonMapOptions& option
   m["DSPACE_TERRAIN"] = ground.name;
   m["DSPACE_TERRAIN_HASH"] = Hex(survey.hash);
   m["DSPACE_HEIGHT_M"] = Exactly(options.height);
+  m["DSPACE_FAST"] = options.fast ? "yes" : "no";
   m["DSPACE_AZIMUTHS"] = std::to_string(options.azimuths);
   m["DSPACE_CELLS"] = std::to_string(cells.column) + " " + std::to_string(cells.row) + " " +
                       std::to_string(cells.every);
@@ -125,7 +127,7 @@ TileFileLayout LayoutOf(const MapGround& ground, const HorizonMapOptions& option
   for (const std::int64_t value :
        {std::int64_t(HorizonMapVersion), std::int64_t(FollowedPosts), cells.column, cells.row,
         std::int64_t(cells.columns), std::int64_t(cells.rows), std::int64_t(cells.every),
-        std::int64_t(options.azimuths)}) {
+        std::int64_t(options.azimuths), std::int64_t(options.fast)}) {
     hash.Add(std::uint64_t(value));
   }
   hash.Add(options.height);
@@ -145,7 +147,8 @@ public:
       this->Maps_.push_back(std::make_unique<HorizonMap>(path));
       const HorizonMap& map = *this->Maps_.back();
       if (map.TerrainHash() != survey.hash || map.Height() != options.height ||
-          map.Azimuths() != options.azimuths || map.Cells().every != options.cells.every) {
+          map.Fast() != options.fast || map.Azimuths() != options.azimuths ||
+          map.Cells().every != options.cells.every) {
         Reject("file '" + path + "'",
                "it is a part of another horizon map, of terrain '" + map.Terrain() + "' by " +
                    std::to_string(map.Azimuths()) + " azimuths at " + NumberText(map.Height()) +
@@ -209,6 +212,7 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
   sweeping.heights = survey->heights;
   sweeping.above = options.height;
   sweeping.fine = true;
+  sweeping.fast = options.fast;
   HorizonSweep sweep(ground.pyramid, ground.placement, sweeping);
   const MapCells& cells = options.cells;
   if (HeldPosts::CountOf(ground.pyramid->Lattice()) <= MostHeld) {
@@ -233,11 +237,8 @@ bool WriteHorizonMap(const MapGround& ground, const HorizonMapOptions& options,
     for (int k = 0; k < options.azimuths && !stop; ++k) {
       sweep.SweepEvery(block, cells.every, 360.0 * k / options.azimuths, tangents.data());
       for (int r = 0; r < block.height; ++r) {
-        for (int c = 0; c < block.width; ++c) {
-          const float t = tangents[std::size_t(r) * block.width + c];
-          elevations[(std::size_t(k) * TileFile::Side + r) * TileFile::Side + c] =
-              t == HorizonSweep::None ? -90.0f : float(std::atan(double(t)) * 180.0 / M_PI);
-        }
+        ElevationsOf(&tangents[std::size_t(r) * block.width], block.width, HorizonSweep::None,
+                     -90.0f, &elevations[(std::size_t(k) * TileFile::Side + r) * TileFile::Side]);
       }
     }
     if (ground.pyramid->LatestChange() != before) {
@@ -282,6 +283,7 @@ HorizonMap::HorizonMap(const std::string& path) : Path_(path), File_(std::make_u
   this->Azimuths_ = int(number("DSPACE_AZIMUTHS"));
   this->Height_ = number("DSPACE_HEIGHT_M");
   this->Terrain_ = m["DSPACE_TERRAIN"];
+  this->Fast_ = m["DSPACE_FAST"] == "yes";
   this->TerrainHash_ = std::strtoull(m["DSPACE_TERRAIN_HASH"].c_str(), nullptr, 16);
   this->InputHash_ = std::strtoull(m["DSPACE_INPUT_HASH"].c_str(), nullptr, 16);
   GdalErrors errors;

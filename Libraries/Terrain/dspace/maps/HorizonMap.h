@@ -18,6 +18,7 @@ namespace dspace {
 struct HorizonMapOptions {
   MapCells cells;
   double height = 0.0; // [m] of the observers above the ground, 0 to 1e6
+  bool fast = false;   // HorizonOptions::fast: to half a degree
   int azimuths = 360;  // evenly spaced, clockwise from north, 1 to 3600
   // Paths of complete maps of parts of its cells, which other processes wrote: what they hold is
   // copied. A tile counts if one part has all of it.
@@ -51,6 +52,7 @@ public:
   int Rows() const { return this->Cells_.rows; }
   int Azimuths() const { return this->Azimuths_; }
   double Height() const { return this->Height_; }
+  bool Fast() const { return this->Fast_; }
   const std::string& Terrain() const { return this->Terrain_; }    // its name for messages
   std::uint64_t TerrainHash() const { return this->TerrainHash_; } // GroundSurvey::hash
   std::uint64_t InputHash() const { return this->InputHash_; }     // of all that it depends on
@@ -70,6 +72,7 @@ private:
   std::unique_ptr<File> File_;
   int Azimuths_ = 0;
   double Height_ = 0.0;
+  bool Fast_ = false;
   std::string Terrain_;
   std::uint64_t TerrainHash_ = 0;
   std::uint64_t InputHash_ = 0;

@@ -22,6 +22,8 @@ def add_arguments(parser):
                         help="the horizon map of `dspace horizon --map` of this terrain (default: one is computed and removed)")
     parser.add_argument("--height", type=float, default=0.0, metavar="H",
                         help="without --horizons: above the ground [m], 0 to 1e6 (default: 0)")
+    parser.add_argument("--fast", action="store_true",
+                        help="horizons to some half a degree, in less than half of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="without --horizons: of the horizons, 1 to 3600 (default: 360)")
     parser.add_argument("--from", dest="start", required=True, metavar="UTC",
@@ -58,6 +60,8 @@ def run(options):
         raise Failed(f"--step {options.step}: accepted: more than 0 s")
     if options.horizons is not None and (options.extent is not None or options.cell_size):
         raise Failed("--extent, --cell-size: accepted: without --horizons, whose cells count")
+    if options.horizons is not None and options.fast:
+        raise Failed("--fast: accepted: without --horizons, which are made already")
     if out.suffix.lower() != ".tif":
         require_gdal()
     quantities = tuple(options.quantity or ("lit_fraction",))
@@ -77,7 +81,7 @@ def run(options):
         if horizons is None:
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="dspace-horizons-"))
             horizons = ground.scene.horizon_map(ground.terrain, pathlib.Path(folder) / "horizons.tif", height=options.height,
-                                                azimuths=options.azimuths, extent=extent_of(options),
+                                                azimuths=options.azimuths, fast=options.fast, extent=extent_of(options),
                                                 cell_size=options.cell_size, **common(options))
         path = stack.enter_context(written_to(out))
         made = ground.scene.illumination_map(horizons, path, start=options.start, end=options.end, step=options.step,
@@ -109,7 +113,7 @@ def run_ensemble(options, out, quantities):
         made = ground.scene.illumination_ensemble(
             options.terrain, whole, variogram, members=options.ensemble, seed=options.seed,
             percentiles=tuple(options.percentile or (5.0, 50.0, 95.0)), quantities=quantities, height=options.height,
-            azimuths=options.azimuths, extent=extent_of(options), cell_size=options.cell_size, start=options.start, end=options.end,
+            azimuths=options.azimuths, fast=options.fast, extent=extent_of(options), cell_size=options.cell_size, start=options.start, end=options.end,
             step=options.step, body=options.body, eclipses=options.eclipses, terrain=ground.arguments, replace=options.replace, **common(options))
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "members": options.ensemble, "seed": options.seed, "variogram": repr(variogram),

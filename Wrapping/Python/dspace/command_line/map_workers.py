@@ -57,7 +57,7 @@ def begin(options, ground, out):
             raise _Begun
 
     with contextlib.suppress(_Begun):
-        ground.scene.horizon_map(ground.terrain, out, height=options.height, azimuths=options.azimuths, extent=extent_of(options),
+        ground.scene.horizon_map(ground.terrain, out, height=options.height, azimuths=options.azimuths, fast=options.fast, extent=extent_of(options),
                                  cell_size=options.cell_size, replace=options.replace, threads=1, progress=stop)
     if not os.path.exists(part):
         return None

@@ -27,7 +27,7 @@ class Ensembles:
         self._scene = scene
 
     def illumination_ensemble(self, raster, path, variogram, *, members=20, seed=0, percentiles=(5.0, 50.0, 95.0),
-                              quantities=("lit_fraction", "longest_night"), height=0.0, azimuths=360, extent=None, cell_size=0.0,
+                              quantities=("lit_fraction", "longest_night"), height=0.0, azimuths=360, extent=None, cell_size=0.0, fast=False,
                               start=None, end=None, step=3600.0, body=None, sun=None, earth=None, eclipses=True, terrain=None,
                               keep=False, replace=False, threads=0, progress=None):
         """Writes how much an illumination map depends on the errors of the heights to a GeoTIFF: of each quantity the mean and
@@ -37,7 +37,7 @@ class Ensembles:
         an illumination map of its own. raster: a file of heights that GDAL reads. path: of a new file. variogram: a Variogram.
         members: 2 to 10,000. seed: a whole number, 0 or more; member k of a seed has the same errors in every ensemble.
         percentiles: 0 to 100, of the members' values (linear between them). terrain: a dict of arguments of add_terrain, such as
-        dict(on_body=True). height, azimuths, extent, cell_size: as of horizon_map(); start, end, step, body, sun, earth, eclipses,
+        dict(on_body=True). height, azimuths, extent, cell_size, fast: as of horizon_map(); start, end, step, body, sun, earth, eclipses,
         quantities: as of illumination_map(). threads and progress: as of both.
 
         The map of each finished member stays in the folder "PATH.members" until the ensemble is complete, with keep=True also
@@ -67,7 +67,7 @@ class Ensembles:
             reject(about, "terrain", terrain, "a dict of arguments of add_terrain", WrongType)
         if os.path.lexists(path) and not flag(replace, "replace", about):
             raise AlreadyExists(f"file {path!r}: it exists; accepted: a new file, or replace=True", path)
-        places = {"height": height, "azimuths": azimuths, "extent": extent, "cell_size": cell_size}
+        places = {"height": height, "azimuths": azimuths, "extent": extent, "cell_size": cell_size, "fast": fast}
         times = {"start": start, "end": end, "step": step, "body": body, "sun": _listed(sun), "earth": _listed(earth),
                  "eclipses": flag(eclipses, "eclipses", about)}
         work = _Work(self._scene, raster, path, variogram, seed, terrain, places, times, chosen, replace, threads, progress, members)

@@ -22,8 +22,8 @@ class Maps:
     def __init__(self, scene):
         self._scene = scene
 
-    def horizon_map(self, terrain, path, *, height=0.0, azimuths=360, extent=None, cell_size=0.0, replace=False, threads=0,
-                    progress=None, deadline=None):
+    def horizon_map(self, terrain, path, *, height=0.0, azimuths=360, extent=None, cell_size=0.0, fast=False, replace=False,
+                    threads=0, progress=None, deadline=None):
         """Writes the horizon of every cell of a grid over a terrain to a GeoTIFF: a band per azimuth, elevations [deg] of the
         highest ground over the plane that is normal to the local vertical, -90 where nothing is in sight, NaN without data.
         Returns a MapFile.
@@ -33,7 +33,8 @@ class Maps:
         1e6. azimuths: evenly spaced, 1 to 3600, clockwise from true north, and from the map's Y axis on a plane and in a polar
         projection (MapFile.first_deg).
         extent: map coordinates (left, top, right, bottom); default: the whole terrain. cell_size: in map units, brought to a
-        whole number of the terrain's posts, 1 to 64; 0: the terrain's pixels.
+        whole number of the terrain's posts, 1 to 64; 0: the terrain's pixels. fast=True: in less than half of the time, to some
+        half a degree where slopes are up to 0.3; default: to 0.01 degrees.
 
         The work runs in `threads` of its own (0: as many as the processor runs at once). progress: a function that is
         called with the done fraction and the estimated seconds left. Where Ctrl-C, an exception of progress, or the
@@ -49,6 +50,7 @@ class Maps:
         put(message, about, height=height, azimuths=azimuths)
         if azimuths == 0:
             reject(about, "azimuths", azimuths, "1 to 3600")
+        message.fast = flag(fast, "fast", about)
         _put_area(message.area, about, extent, cell_size)
         bands = [f"azimuth {360.0 * k / azimuths:.9g} deg" for k in range(azimuths)]
         return self._make(command, message, about, path, bands, replace, threads, progress, deadline)

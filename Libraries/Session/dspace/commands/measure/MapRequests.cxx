@@ -103,6 +103,7 @@ void MapHorizons(const Context& context, MapJobs& jobs, const v1::HorizonMap& co
     HorizonMapOptions options;
     options.cells = CellsOf(*ground, command.area());
     options.height = command.height();
+    options.fast = command.fast();
     if (command.azimuths() != 0) {
       options.azimuths = int(command.azimuths());
     }
