@@ -253,7 +253,7 @@ def test_fast_horizon_maps(scene, ground, tmp_path, refused):
     fast = scene.horizon_map(ground, tmp_path / "fast.tif", azimuths=8, height=2.0, fast=True)
     assert (exact.metadata["DSPACE_FAST"], fast.metadata["DSPACE_FAST"]) == ("no", "yes")
     errors = np.abs([exact.read(band) - fast.read(band) for band in exact.bands])
-    assert 0.0 < np.nanmedian(errors) < 0.05  # of ground much steeper than half a degree is promised for: TestHorizonMap has that
+    assert np.nanmedian(errors) < 0.05 < np.nanmax(errors)  # of ground much steeper than half a degree is promised for: TestHorizonMap has that
     with refused(dspace.WrongType, "fast is 1"):
         scene.horizon_map(ground, tmp_path / "x.tif", fast=1)
 
