@@ -78,12 +78,22 @@ struct vtkDspaceWatcher::Internals {
       }
       for (const bool superseded : dspace::session::SupersededSteps(messages, at)) {
         if (superseded) {
+          this->NoteTime(messages[at].command());
           this->sequence = messages[at].sequence();
         } else {
           this->Apply(messages[at]);
         }
         ++at;
       }
+    }
+  }
+
+  // The beginning of a scene is the least time, of steps that are skipped too.
+  void NoteTime(const dspace::v1::Command& command) {
+    auto& scenes = this->Interpreter().GetState().scenes;
+    const auto found = scenes.find(dspace::session::SceneName(command));
+    if (command.has_set_time() && found != scenes.end()) {
+      found->second.NoteTime(command.set_time().time_s());
     }
   }
 

@@ -92,6 +92,7 @@ public:
   void Aim(std::size_t index);
   bool Continue(double seconds);
   bool IsMoving() const { return this->Aim_.has_value(); }
+  std::optional<std::size_t> Aimed() const { return this->Aim_; } // of a movement
   void SetGuests(PlaybackGuests guests) { this->Guests_ = std::move(guests); }
   // The packed files and their present paths.
   const RecordedFiles& Files() const { return *this->Files_; }

@@ -1,5 +1,7 @@
 #include <dspace/state/State.h>
 
+#include <algorithm>
+
 #include <dspace/Error.h>
 
 namespace dspace::session {
@@ -24,6 +26,10 @@ SceneState& State::FindScene(const std::string& name) {
                 "there is no such scene; there are: " + (names.empty() ? "none" : names));
   }
   return found->second;
+}
+
+void SceneState::NoteTime(double time_s) {
+  this->begin_s = std::min(this->begin_s.value_or(time_s), time_s);
 }
 
 const TerrainObject* SceneState::TerrainOf(ObjectId object) const {

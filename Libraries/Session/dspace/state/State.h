@@ -46,6 +46,7 @@ struct DrawnObject {
 struct SceneState {
   std::shared_ptr<Scene> scene;
   std::optional<double> begin_s; // the least time that was set; none: none was
+  void NoteTime(double time_s);  // of a time that was set
   std::map<std::string, std::unique_ptr<Robot>> robots;
   std::map<FrameId, ModelNodes> models; // whose nodes are frames, by their base frame
   std::map<std::string, std::unique_ptr<TerrainObject>> terrains;

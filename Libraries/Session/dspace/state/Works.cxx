@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <utility>
@@ -24,14 +23,18 @@ double SecondsSince(Clock::time_point then) {
 } // namespace
 
 struct Works::Running {
-  bool IsAbandoned() const { return SecondsSince(this->asked.load()) > Abandoned; }
+  explicit Running(double abandoned) : abandoned(abandoned) {}
+  bool IsAbandoned() const { return !this->waited && SecondsSince(this->asked) > this->abandoned; }
 
+  const double abandoned; // [s]
+
+  std::atomic<bool> waited{false};                    // a client waits now
   std::atomic<Clock::time_point> asked{Clock::now()}; // when a client waited last
   v1::Reply reply;                                    // of the thread until its end
   std::unique_ptr<WorkThread> thread;                 // last: it uses the others
 };
 
-Works::Works() = default;
+Works::Works(double abandoned) : Abandoned_(abandoned) {}
 Works::~Works() {
   for (const auto& [id, running] : this->Running_) {
     running->thread->Stop(); // all of them, before one is waited for
@@ -44,13 +47,13 @@ void Works::Run(v1::Reply& reply, const Terms& terms, Compute compute) {
     return;
   }
   this->DropAbandoned();
-  if (this->Running_.size() >= Most) {
+  if (this->Running_.size() >= Most || this->Ending_.size() >= Most) {
     throw Error(Error::Kind::Resource, "work",
                 std::to_string(Most) + " requests are being computed; accepted: another one when "
                                        "one of them has ended, or was cancelled");
   }
   const std::uint64_t id = ++this->Last_;
-  auto running = std::make_unique<Running>();
+  auto running = std::make_unique<Running>(this->Abandoned_);
   running->thread = std::make_unique<WorkThread>(
       [&own = *running, terms, compute = std::move(compute)](WorkThread& thread) {
         const Clock::time_point start = Clock::now();
@@ -81,7 +84,6 @@ void Works::Run(v1::Reply& reply, const Terms& terms, Compute compute) {
 }
 
 void Works::Await(v1::Reply& reply, const v1::AwaitWork& command) {
-  this->DropAbandoned();
   const auto found = this->Running_.find(command.work());
   if (found == this->Running_.end()) {
     throw Error(Error::Kind::NotFound, "work " + std::to_string(command.work()),
@@ -92,10 +94,11 @@ void Works::Await(v1::Reply& reply, const v1::AwaitWork& command) {
     v1::WorkReply& work = *reply.mutable_work();
     work.set_work(command.work());
     work.set_fraction(found->second->thread->Told().fraction);
-    this->Running_.erase(found);
+    this->End(command.work());
     return;
   }
   found->second->asked = Clock::now();
+  this->DropAbandoned();
   this->Answer(reply, command.work(),
                command.has_wait_s() ? std::optional<double>(command.wait_s()) : std::nullopt);
 }
@@ -103,8 +106,11 @@ void Works::Await(v1::Reply& reply, const v1::AwaitWork& command) {
 void Works::Answer(v1::Reply& reply, std::uint64_t id, const std::optional<double>& wait) {
   const auto found = this->Running_.find(id);
   Running& running = *found->second;
-  if (!running.thread->Wait(wait)) {
-    running.asked = Clock::now();
+  running.waited = true;
+  const bool ended = running.thread->Wait(wait);
+  running.asked = Clock::now();
+  running.waited = false;
+  if (!ended) {
     const WorkThread::Progress told = running.thread->Told();
     v1::WorkReply& work = *reply.mutable_work();
     work.set_work(id);
@@ -112,19 +118,35 @@ void Works::Answer(v1::Reply& reply, std::uint64_t id, const std::optional<doubl
     work.set_left_s(told.left);
     return;
   }
-  const std::unique_ptr<Running> ended = std::move(found->second);
+  const std::unique_ptr<Running> done = std::move(found->second);
   this->Running_.erase(found);
-  ended->thread->Check();
-  v1::Reply& result = ended->reply; // may be large: it is swapped
+  done->thread->Check();
+  v1::Reply& result = done->reply; // may be large: it is swapped
   reply.mutable_warning()->MergeFrom(result.warning());
   result.mutable_warning()->Swap(reply.mutable_warning());
   reply.Swap(&result);
 }
 
+void Works::End(std::uint64_t id) {
+  const auto found = this->Running_.find(id);
+  found->second->thread->Stop();
+  this->Ending_.push_back(std::move(found->second));
+  this->Running_.erase(found);
+}
+
 void Works::DropAbandoned() {
-  for (auto it = this->Running_.begin(); it != this->Running_.end();) {
-    it = it->second->IsAbandoned() ? this->Running_.erase(it) : std::next(it);
+  std::vector<std::uint64_t> abandoned;
+  for (const auto& [id, running] : this->Running_) {
+    if (running->IsAbandoned()) {
+      abandoned.push_back(id);
+    }
   }
+  for (const std::uint64_t id : abandoned) {
+    this->End(id);
+  }
+  this->Ending_.erase(std::remove_if(this->Ending_.begin(), this->Ending_.end(),
+                                     [](const auto& each) { return each->thread->Wait(0.0); }),
+                      this->Ending_.end());
 }
 
 } // namespace dspace::session

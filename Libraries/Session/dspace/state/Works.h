@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <dspace/messages/Deadline.h>
 #include <dspace/proto/commands.pb.h>
@@ -19,7 +20,7 @@ class Works {
 public:
   // At most so many are computed or wait for their AwaitWork; a further one is rejected.
   static constexpr std::size_t Most = 64;
-  // [s] Work that no AwaitWork asks for in this time is cancelled, and its result dropped.
+  // [s] Work that no request waited for in this time is cancelled, and its result dropped.
   static constexpr double Abandoned = 60.0;
 
   // The work calls it often with how much of it is done (0 to 1). It throws where the work is to
@@ -33,7 +34,7 @@ public:
     std::shared_ptr<const KernelSet> kernels; // whose time scales warnings have
   };
 
-  Works();
+  explicit Works(double abandoned = Abandoned);
   Works(const Works&) = delete;
   Works& operator=(const Works&) = delete;
   ~Works();
@@ -48,11 +49,15 @@ public:
 private:
   struct Running;
   void DropAbandoned();
+  // Tells work to end, without waiting for that.
+  void End(std::uint64_t id);
   // Takes the result, if it is there.
   void Answer(v1::Reply& reply, std::uint64_t id, const std::optional<double>& wait);
 
   std::map<std::uint64_t, std::unique_ptr<Running>> Running_;
+  std::vector<std::unique_ptr<Running>> Ending_;
   std::uint64_t Last_ = 0;
+  const double Abandoned_; // [s]
 };
 
 } // namespace dspace::session

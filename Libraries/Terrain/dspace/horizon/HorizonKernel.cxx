@@ -10,6 +10,7 @@
 namespace dspace {
 namespace {
 
+constexpr float Most = 1e30f;     // of a tangent; above: of a post without data
 constexpr float Rounding = 1e-6f; // of floats: more than that of a product, a sum and a quotient
 
 } // namespace
@@ -63,11 +64,20 @@ void MarchEdgesFast(const std::vector<EdgeStep>& steps, const float* heights, co
   alignas(32) float from[HorizonLanes];
   std::copy_n(tangents, HorizonLanes, best);
   std::copy_n(z, HorizonLanes, from);
+  float base = 0.0f;
+  int lanes = 0;
+  for (int i = 0; i < HorizonLanes; ++i) {
+    if (std::isfinite(z[i]) && !(tangents[i] > Most)) { // else it has no data
+      base += z[i];
+      ++lanes;
+    }
+  }
+  base /= float(std::max(lanes, 1));
   for (const EdgeStep& step : steps) {
     const float* a = heights + step.first;
     const float* b = heights + step.second;
     const HorizonStep g = step.ground;
-    const float near = 1.0f / g.away;
+    const float near = 1.0f / (g.away + g.spread * base);
     const float second = step.share * g.rise;
     const float first = g.rise - second;
     for (int i = 0; i < HorizonLanes; ++i) {

@@ -38,7 +38,8 @@ struct CellStep {
 // Raise `tangents` of HorizonLanes posts of heights `z` to those of the steps. NaN is no ground.
 void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
                 float* tangents);
-// The same to 1e-5 of the tangents: the distance of ground does not grow with its height.
+// The same, with all ground as far away as that of the lanes' mean height: the tangents err by the
+// difference over the body's radius.
 void MarchEdgesFast(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
                     float* tangents);
 // `width`: of a row of heights.

@@ -152,8 +152,9 @@ public:
         Reject("file '" + path + "'",
                "it is a part of another horizon map, of terrain '" + map.Terrain() + "' by " +
                    std::to_string(map.Azimuths()) + " azimuths at " + NumberText(map.Height()) +
-                   " m; accepted: a part with the ground, the cells' spacing, the height and the "
-                   "azimuths of the whole");
+                   " m" + (map.Fast() ? " in the fast mode" : "") +
+                   "; accepted: a part with the ground, the cells' spacing, the height, the "
+                   "azimuths and the mode of the whole");
       }
     }
   }

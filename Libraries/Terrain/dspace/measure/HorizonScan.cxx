@@ -195,26 +195,35 @@ std::vector<HorizonPoint> ScanHorizon(const Obstacles& obstacles, const V& place
                                       const std::string& label,
                                       const std::function<void(double)>& progress) {
   std::vector<HorizonPoint> horizon(count);
-  double rays = 0.0;
+  const double parts = double(obstacles.Grounds().size() + obstacles.Solids().size());
+  double done = 0.0;
   for (const Obstacles::Ground& ground : obstacles.Grounds()) {
     GroundScan scan(obstacles, ground, place_R, axes, label);
     for (std::size_t k = 0; k < count; ++k) {
       if (progress) {
-        progress(rays++ / double(count * obstacles.Grounds().size()));
+        progress((done + double(k) / double(count)) / parts);
       }
       const HorizonPoint found = scan.Find(2.0 * M_PI * double(k) / double(count));
       if (found.elevation_deg > horizon[k].elevation_deg || !std::isfinite(horizon[k].distance)) {
         horizon[k] = found;
       }
     }
+    ++done;
   }
   Eigen::Matrix3d toLevel;
   toLevel << axes.east.transpose(), axes.north.transpose(), axes.up.transpose();
   for (const Obstacles::Solid& solid : obstacles.Solids()) {
-    obstacles.Check();
+    if (progress) {
+      progress(done++ / parts);
+    }
+    constexpr int Together = 64; // triangles between two checks
+    int triangle = 0;
     Eigen::Affine3d X_LM = solid.X_RM;
     X_LM.pretranslate(-place_R).prerotate(toLevel);
     solid.rays->ForEach([&](const V& a, const V& b, const V& c) {
+      if (triangle++ % Together == 0) {
+        obstacles.Check();
+      }
       AddTriangle({X_LM * a, X_LM * b, X_LM * c}, solid.id, place_R, axes, horizon);
     });
   }

@@ -35,7 +35,8 @@ struct HorizonPoint {
 // from the zenith down in steps of 0.25 degrees. Triangles: in closed form, from where the vertical
 // half-plane of the azimuth cuts them.
 //
-// `progress` is called at each azimuth with the part of the rays that is done, 0 to 1.
+// `progress` is called at each azimuth of a ground and at each solid, with the part that is done,
+// 0 to 1.
 //
 // Throws what Obstacles::Stand throws for a place below the ground.
 std::vector<HorizonPoint> ScanHorizon(const Obstacles& obstacles, const Eigen::Vector3d& place_R,

@@ -121,7 +121,8 @@ void AddPiece(const Obstacles& obstacles, const DiscRays& rays, const SunDisc& s
 } // namespace
 
 LitArea MeasureLitArea(const Obstacles& obstacles, const SunDisc& sun,
-                       const std::vector<Face>& faces_R, bool bothSides, std::size_t samples) {
+                       const std::vector<Face>& faces_R, bool bothSides, std::size_t samples,
+                       const std::function<void(double)>& progress) {
   const auto areaOf = [](const Face& face) {
     return (face[1] - face[0]).cross(face[2] - face[0]).norm() / 2.0;
   };
@@ -145,6 +146,9 @@ LitArea MeasureLitArea(const Obstacles& obstacles, const SunDisc& sun,
     for (int row = 0; row < side; ++row) {
       for (int column = 0; column < 2 * (side - row) - 1; ++column) {
         obstacles.Check();
+        if (progress) {
+          progress(sum.area / (bothSides ? 2.0 * whole : whole));
+        }
         ++number;
         // Pieces stand on their bases and on their tips by turns. The points of the pieces are
         // those of Roberts' sequence R2, folded into the triangle.

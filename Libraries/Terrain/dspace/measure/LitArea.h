@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -34,10 +35,13 @@ struct LitArea {
 // to 16 points of the disc, turned from place to place. The error is about the area of the pieces
 // that an edge of a shadow crosses, over the square root of their number.
 //
+// `progress` is called at each place with the part of the area that is done, 0 to 1.
+//
 // A place below the ground of an obstacle is dark. With `bothSides` the back of each face counts as
 // another face, so that the area is twice as large.
 LitArea MeasureLitArea(const Obstacles& obstacles, const SunDisc& sun,
-                       const std::vector<Face>& faces_R, bool bothSides, std::size_t samples);
+                       const std::vector<Face>& faces_R, bool bothSides, std::size_t samples,
+                       const std::function<void(double)>& progress = {});
 
 } // namespace dspace
 

@@ -99,8 +99,15 @@ std::shared_ptr<GridTerrain> GridTerrain::Load(const std::string& path,
   return terrain;
 }
 
+std::shared_lock<std::shared_mutex> GridTerrain::Reading() const {
+  if (this->Writing_) { // else new readers would hold the lock for ever, one after the other
+    const std::lock_guard<std::mutex> turn(this->Turn_);
+  }
+  return std::shared_lock<std::shared_mutex>(this->Mutex_);
+}
+
 TerrainBounds GridTerrain::DoGetBounds() const {
-  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
+  const auto lock = this->Reading();
   TerrainBounds bounds;
   const double c = this->Grid_.GetColumns(), r = this->Grid_.GetRows();
   const std::array<double, 2> heights =
@@ -124,7 +131,10 @@ void GridTerrain::TracksChanged(const std::vector<TrackReach>& reaches) {
   if (changed.empty()) {
     return;
   }
+  const std::lock_guard<std::mutex> turn(this->Turn_);
+  this->Writing_ = true;
   const std::unique_lock<std::shared_mutex> lock(this->Mutex_);
+  this->Writing_ = false; // later readers wait for the lock
   const std::int64_t columns = this->Grid_.GetColumns(), rows = this->Grid_.GetRows();
   if (!this->Undisturbed_) {
     this->Rolled_.assign(this->Grid_.GetHeights().size(), -1.0f);
@@ -163,7 +173,7 @@ void GridTerrain::TracksChanged(const std::vector<TrackReach>& reaches) {
 }
 
 SurfaceSample GridTerrain::SampleGrid(const Eigen::Vector2d& g, const Eigen::Vector2d& xy_S) const {
-  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
+  const auto lock = this->Reading();
   const HeightGrid::Facet facet = this->Grid_.FacetAt(g);
   SurfaceSample sample;
   if (!facet.valid)
@@ -187,7 +197,7 @@ SurfaceSample GridTerrain::DoSampleMap(const Eigen::Vector2d& map) const {
 
 void GridTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
                             Eigen::Ref<Eigen::VectorXd> heights) const {
-  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
+  const auto lock = this->Reading();
   for (Eigen::Index i = 0; i < points_S.rows(); ++i) {
     const HeightGrid::Facet facet =
         this->Grid_.FacetAt(this->Grid_.ToGrid({points_S(i, 0), points_S(i, 1)}));
@@ -197,7 +207,7 @@ void GridTerrain::DoHeights(const Eigen::Ref<const Rows3>& points_S,
 
 RayHit GridTerrain::DoIntersect(const Eigen::Vector3d& origin_S, const Eigen::Vector3d& unit_S,
                                 double maximumDistance) const {
-  const std::shared_lock<std::shared_mutex> lock(this->Mutex_);
+  const auto lock = this->Reading();
   const Eigen::Vector3d lift(0.0, 0.0, this->Frame_.GetOriginHeight());
   const GridRay::Hit found = this->Ray_.Intersect(origin_S + lift, unit_S, maximumDistance);
   RayHit hit;

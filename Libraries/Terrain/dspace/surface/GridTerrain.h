@@ -2,7 +2,9 @@
 #ifndef DSPACE_TERRAIN_GRIDTERRAIN_H
 #define DSPACE_TERRAIN_GRIDTERRAIN_H
 
+#include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <string>
@@ -100,7 +102,10 @@ private:
 
   Eigen::Affine2d PixelToMap_;
   SceneFrame Frame_;
+  std::shared_lock<std::shared_mutex> Reading() const;
   mutable std::shared_mutex Mutex_; // of the heights
+  mutable std::mutex Turn_;         // of a writer, for which readers make way
+  std::atomic<bool> Writing_{false};
   HeightGrid Grid_;
   GridRay Ray_;
   std::unique_ptr<GroundTracks> Tracks_;           // over the undisturbed posts

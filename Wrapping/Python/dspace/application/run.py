@@ -7,7 +7,7 @@ from dspace._core.replies import make_error, to_reply, warn
 from dspace._core.wire import encode
 from dspace.clients.local import LocalClient
 from dspace.clients.session import Session
-from dspace.errors import NotFound, Resource, Unsupported
+from dspace.errors import Resource, Unsupported
 from dspace.links.watching import OWN
 from dspace.playback.playback import Playback
 
@@ -121,12 +121,10 @@ class Run(Playback):
             raise Resource(f"{self.file.label}: the timeline was moved meanwhile", self.file.label)
 
     def _return_to(self, index):
-        """Half of a way may be there: the timeline goes back to the complete step by itself."""
-        try:
-            require(self._player.BeginGo(index))
-            self._host.clock(self._player, "seek", self.times[index], 0.0)
-        except NotFound:  # there is no timeline without a view
-            require(self._player.Go(index))
+        """Half of a way may be there."""
+        require(self._player.BeginGo(index))
+        while self._player.ContinueGo(SLICE) == 0 and self._host.breathe():
+            pass
 
     @property
     def index(self):

@@ -85,6 +85,8 @@ def maps_of(ground, folder, mast, extent, options):
     work = {"threads": options.threads, "progress": None if options.quiet else Progress()}
     if horizon_file.exists():
         horizons = dspace.MapFile.open(horizon_file)
+        if (horizons.metadata.get("DSPACE_FAST") == "yes") != options.fast:
+            raise Failed(f"{horizon_file}: it was made {'without' if options.fast else 'with'} --fast; accepted: the same, or another folder")
     else:
         horizons = ground.scene.horizon_map(ground.terrain, horizon_file, height=mast, azimuths=options.azimuths, fast=options.fast, extent=extent,
                                             cell_size=options.cell_size, **work)

@@ -203,8 +203,11 @@ class History:
             if scene not in there or not scene.goes_on(events.get(scene, ())):
                 scene.forget()
             scene.time = 0.0  # of a scene whose time was not set
+        times = {self._scene(command): command for command in commands if command.WhichOneof("command") == "set_time"}
         for command in commands:
-            if command.WhichOneof("command") not in ("create_scene", "remove_scene"):
+            kind, scene = command.WhichOneof("command"), self._scene(command)
+            # The first time of a scene, before its present one, is where clocks count from.
+            if kind not in ("create_scene", "remove_scene") and not (kind == "set_time" and command is not times[scene]):
                 self._scene(command).apply(command, snapshot.seq, after_loss)
         for scene in there:
             scene.clock = scene.clock or [scene.time]

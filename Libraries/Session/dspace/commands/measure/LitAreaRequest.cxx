@@ -185,10 +185,10 @@ void FindLitArea(const Context& context, v1::LitArea& command) {
                     bothSides = command.both_sides()](const Obstacles& obstacles, v1::Reply& reply,
                                                       const Works::Proceed& proceed) {
     for (std::size_t i = 0; i < faces.size(); ++i) {
-      proceed(double(i) / double(faces.size()));
+      const auto tell = [&](double part) { proceed((double(i) + part) / double(faces.size())); };
       const Lit& light = lights[i];
       v1::LitAreaReply::Surface* surface = areas->mutable_surface(int(i));
-      const LitArea lit = MeasureLitArea(obstacles, light.sun, faces[i], bothSides, samples);
+      const LitArea lit = MeasureLitArea(obstacles, light.sun, faces[i], bothSides, samples, tell);
       if (lit.buried > BuriedShare * lit.area) {
         reply.add_warning("object '" + names[i] +
                           "': " + NumberText(100.0 * lit.buried / lit.area) +

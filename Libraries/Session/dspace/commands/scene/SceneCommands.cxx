@@ -93,8 +93,7 @@ void SetTime(const Context& context, v1::SetTime& command) {
   }
   MoveSky(context, command.sky());
   scene.SetTime(command.time_s());
-  std::optional<double>& begin_s = context.scene->begin_s;
-  begin_s = std::min(begin_s.value_or(command.time_s()), command.time_s());
+  context.scene->NoteTime(command.time_s());
   for (std::string& warning : context.scene->MoveTrajectories()) {
     context.reply.add_warning(std::move(warning));
   }

@@ -135,7 +135,10 @@ void PlaybackTimeSource::Aim(std::size_t index, bool foreign) {
 void PlaybackTimeSource::Advance(double wall_s) {
   this->Update(wall_s);
   // Of a script, which waits for its end; the user's own movements take over.
-  const bool foreign = !this->Target_ && this->Playback_.IsMoving();
+  const bool foreign = this->Playback_.IsMoving() && this->Playback_.Aimed() != this->Target_;
+  if (foreign) {
+    this->Target_.reset();
+  }
   if (!this->Playback_.IsMoving()) {
     this->Target_.reset();
     if (this->Playback_.Index() != this->Known_) { // moved by a script
