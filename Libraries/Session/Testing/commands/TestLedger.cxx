@@ -203,5 +203,18 @@ TEST_F(LedgerTest, TheBeginningOfTheSceneIsKept) {
   EXPECT_EQ(late.GetState().scenes.begin()->second.scene->Time(), 705.0);
 }
 
+TEST_F(LedgerTest, ASceneWithoutATimeDoesNotBeginAtItsLags) {
+  v1::Command lags;
+  lags.mutable_set_time()->set_put_lags(true);
+  this->Accept(lags);
+  v1::Command time;
+  time.mutable_set_time()->set_time_s(700.0);
+  this->Accept(time);
+  time.mutable_set_time()->set_time_s(705.0);
+  this->Accept(time);
+  EXPECT_EQ(this->Interpreter_.GetState().scenes.begin()->second.begin_s, 700.0);
+  EXPECT_EQ(this->Ledger_.Commands()[1].set_time().time_s(), 700.0);
+}
+
 } // namespace
 } // namespace dspace::testing

@@ -46,7 +46,9 @@ bool LedgerNames::Add(const v1::Command& command, const v1::Reply& reply) {
   switch (command.command_case()) {
   case C::kSetTime:
     this->Time_ = command.set_time().time_s();
-    this->Begin_ = std::min(this->Begin_.value_or(*this->Time_), *this->Time_);
+    if (!command.set_time().put_lags()) { // a snapshot's has a time of a scene without one too
+      this->Begin_ = std::min(this->Begin_.value_or(*this->Time_), *this->Time_);
+    }
     this->Lags_.clear();
     for (const v1::CameraLag& lag : reply.time().lag()) {
       this->Lags_[{lag.vantage(), lag.camera()}] = lag;

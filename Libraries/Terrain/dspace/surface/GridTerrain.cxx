@@ -111,9 +111,8 @@ TerrainBounds GridTerrain::DoGetBounds() const {
   TerrainBounds bounds;
   const double c = this->Grid_.GetColumns(), r = this->Grid_.GetRows();
   const std::array<double, 2> heights =
-      !this->Undisturbed_
-          ? std::array<double, 2>{this->Grid_.GetMinimum(), this->Grid_.GetMaximum()}
-          : this->Ray_.Range();
+      !this->Disturbed_ ? std::array<double, 2>{this->Grid_.GetMinimum(), this->Grid_.GetMaximum()}
+                        : this->Ray_.Range();
   for (double x : {0.5, c - 0.5})
     for (double y : {0.5, r - 0.5}) {
       const Eigen::Vector2d map = this->PixelToMap_ * Eigen::Vector2d(x, y);
@@ -135,6 +134,7 @@ void GridTerrain::TracksChanged(const std::vector<TrackReach>& reaches) {
   this->Writing_ = true;
   const std::unique_lock<std::shared_mutex> lock(this->Mutex_);
   this->Writing_ = false; // later readers wait for the lock
+  this->Disturbed_ = !this->Tracks_->Empty();
   const std::int64_t columns = this->Grid_.GetColumns(), rows = this->Grid_.GetRows();
   if (!this->Undisturbed_) {
     this->Rolled_.assign(this->Grid_.GetHeights().size(), -1.0f);

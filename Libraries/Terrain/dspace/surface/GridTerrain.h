@@ -110,6 +110,7 @@ private:
   GridRay Ray_;
   std::unique_ptr<GroundTracks> Tracks_;           // over the undisturbed posts
   std::shared_ptr<const GridTerrain> Undisturbed_; // since the first track
+  bool Disturbed_ = false;                         // there are tracks
   std::vector<float> Rolled_;                      // a post; empty before the first track
   std::vector<PostRectangle> Changes_;
   std::uint64_t Version_ = 0;

@@ -93,7 +93,9 @@ void SetTime(const Context& context, v1::SetTime& command) {
   }
   MoveSky(context, command.sky());
   scene.SetTime(command.time_s());
-  context.scene->NoteTime(command.time_s());
+  if (!command.put_lags()) { // a snapshot's has a time of a scene without one too
+    context.scene->NoteTime(command.time_s());
+  }
   for (std::string& warning : context.scene->MoveTrajectories()) {
     context.reply.add_warning(std::move(warning));
   }
