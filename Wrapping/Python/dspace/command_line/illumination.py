@@ -23,7 +23,7 @@ def add_arguments(parser):
     parser.add_argument("--height", type=float, default=0.0, metavar="H",
                         help="without --horizons: above the ground [m], 0 to 1e6 (default: 0)")
     parser.add_argument("--fast", action="store_true",
-                        help="horizons to some half a degree, in less than half of the time (default: to 0.01 degrees)")
+                        help="horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="without --horizons: of the horizons, 1 to 3600 (default: 360)")
     parser.add_argument("--from", dest="start", required=True, metavar="UTC",

@@ -24,7 +24,7 @@ def add_arguments(parser):
     parser.add_argument("--to", dest="end", required=True, metavar="UTC", help="the end, which is no step itself")
     parser.add_argument("--step", type=float, default=3600.0, metavar="S", help="[s] (default: 3600)")
     parser.add_argument("--fast", action="store_true",
-                        help="horizons to some half a degree, in less than half of the time (default: to 0.01 degrees)")
+                        help="horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N", help="of the horizons, 1 to 3600 (default: 360)")
     parser.add_argument("--cell-size", type=float, default=0.0, metavar="S",
                         help="spacing of the cells in map units, up to 64 posts (default: the raster's pixels)")
