@@ -1,4 +1,4 @@
-"""Long measurements: progress, the end of them by the user, and a server that serves others meanwhile."""
+"""Long measurements: progress, cancelling, and a server that keeps serving its viewers."""
 import numpy as np
 import pytest
 

@@ -161,7 +161,7 @@ TEST_F(WorkRequests, GoesOnBetweenRequestsUntilItIsCancelled) {
   v1::Command await = Await(work);
   await.mutable_await_work()->set_wait_s(0.01);
   double fraction = 0.0;
-  while (fraction == 0.0) { // other commands are executed meanwhile
+  while (fraction == 0.0) { // the session executes other commands
     const v1::Reply reply = this->Accept(await);
     ASSERT_TRUE(reply.has_work());
     fraction = reply.work().fraction();

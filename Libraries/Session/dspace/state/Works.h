@@ -26,7 +26,7 @@ public:
   // The work calls it often with how much of it is done (0 to 1). It throws where the work is to
   // end: at the deadline, and when nobody waits any more.
   using Proceed = std::function<void(double fraction)>;
-  // Fills in a reply from what it holds itself: the scene changes meanwhile.
+  // Fills in a reply from its own copies: the scene may change while it runs.
   using Compute = std::function<void(v1::Reply&, const Proceed&)>;
   struct Terms {
     std::optional<double> wait; // [s]; absent: the calling thread computes

@@ -25,9 +25,9 @@ struct HorizonOptions {
   // sight is followed on a great circle between more places, and where columns crowd about a pole
   // of a degree grid of up to 131072 columns at every edge too.
   bool fine = false;
-  // Faster: horizons are found to half a degree, where ground has slopes of up to 0.3. Beyond
-  // `FastExact` posts one place is taken in each 1 / FastExact of the distance, and ground that
-  // could raise no horizon by more than FastSlack is left out.
+  // About twice as fast, to half a degree where slopes are up to 0.3. Beyond `FastExact` posts the
+  // samples are 1 / FastExact of the distance apart. The sweep skips ground that cannot raise a
+  // horizon by more than FastSlack.
   bool fast = false;
   static constexpr int FastExact = 24;
   static constexpr float FastSlack = 0.003f; // of the tangent: 0.17 degrees

@@ -1,4 +1,5 @@
-// A small window keeps its size: docks are closed for it, in order, or the least size is told.
+// A small window keeps its size: it closes docks in a fixed order, or the message names the
+// smallest size.
 #include <gtest/gtest.h>
 
 #include <QDockWidget>
@@ -44,7 +45,7 @@ TEST(SmallWindow, ClosesOnlyTheDocksThatLeaveNoRoom) {
   EXPECT_TRUE(QTest::qWaitFor([&] { return window.size() == QSize(420, 400); }, 5000));
   EXPECT_TRUE(python->isHidden());
   EXPECT_FALSE(scene->isHidden() || time->isHidden() || view->isHidden());
-  // Views stay; the least size is told.
+  // Views stay; the message names the smallest size.
   const QString least = KeepSmall(window, {100, 90});
   EXPECT_NE(least.indexOf("closed are scene, time"), -1) << least.toStdString();
   EXPECT_NE(least.indexOf("the least size of this window is 2"), -1) << least.toStdString();

@@ -42,8 +42,8 @@ class Sights:
         of its level_size posts.
         resolution: pixels of a picture of 90 degrees, 16 to 16384 (default 2048).
 
-        progress: called as progress(fraction, left_s) while a long measurement goes on; what it raises cancels it. A server serves its
-        other clients meanwhile.
+        progress: called as progress(fraction, left_s) during a long measurement; an exception in it cancels the measurement. A server
+        keeps serving its viewers.
 
         Raises dspace.InvalidArgument for a start that is its end, for a place below the ground of a terrain that is an
         obstacle, and for a Site off the data or where there is none; dspace.DeadlineExceeded."""

@@ -1,4 +1,4 @@
-"""Measurements that take long: the session computes them in threads of its own, and serves others meanwhile."""
+"""Long measurements. The session computes them in its own threads and executes other commands."""
 import time
 
 from dspace._core.fields import reject

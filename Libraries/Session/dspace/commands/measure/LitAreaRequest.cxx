@@ -19,7 +19,7 @@ namespace dspace::session {
 namespace {
 
 constexpr int MostObjects = 10000;
-constexpr double BuriedShare = 0.01; // of an object's area, from which it is told
+constexpr double BuriedShare = 0.01; // of an object's area; above: the reply has a warning
 
 std::string Quoted(const std::set<std::string>& names) {
   std::string text;
