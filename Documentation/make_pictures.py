@@ -16,7 +16,7 @@ EVERYWHERE = (scenes.first_picture, cookbook.cookbook, scenes.views, scenes.demo
               application.application_telemetry, application.application_console, application.application_dark,
               application.application_keys, application.application_map, application.application_messages,
               application.application_overlay)
-OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_viewshed, ranges.lidar, models.formats,
+OF_REAL_DATA = (scenes.drives, lenses.closed_loop, measure.measure_horizon, measure.measure_lit, measure.measure_viewshed, ranges.lidar, models.formats,
                 terrain.levels, terrain.layers, terrain.normals, terrain.far_shadows, terrain.whole_mars,
                 terrain.labels, terrain.pole, terrain.valles_marineris, terrain.two_views, terrain.earth,
                 application.application_terrain, application.application_terrain_dock, application.application_measure,

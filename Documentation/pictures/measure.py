@@ -27,6 +27,14 @@ def measure_horizon():
     assert code == 0
 
 
+def measure_lit():
+    """The Sun over the horizon of a panel where Curiosity landed."""
+    code = main(["lit", "--terrain", f"{DATA}/terrain/mars_gale_mola_128ppd_m.tif", "--site", "137.4417,-4.5895", "--vertical-datum",
+                 "areoid", "--panel", "2,1", "--facing", "120,30", "--sun", "112,8.5", "--distance-au", "1.52", "--efficiency", "0.3",
+                 "--out", str(IMAGES / "measure_lit.png")])
+    assert code == 0
+
+
 def measure_viewshed():
     """What a camera 2 m above Curiosity's landing site sees of Gale crater, over shaded relief."""
     file = pathlib.Path(DATA) / "terrain" / "mars_gale_mola_128ppd_m.tif"
