@@ -46,6 +46,19 @@ TEST(HorizonMap, APlaneAgreesWithRays) {
   }
 }
 
+// From masts over a swell, past whose near crests hundreds of posts are seen.
+TEST(HorizonMap, FarGroundOfAPlaneAgreesWithRays) {
+  const TemporaryFolder folder;
+  const auto ground = Rough(900, 70, 6);
+  const MapGround map = MapGroundOf(*ground);
+  HorizonMapOptions options;
+  options.cells = FindCells(map, std::nullopt, 0.7);
+  options.height = 8.0;
+  options.azimuths = 72;
+  const HorizonMap written = Written(map, options, (folder.Path() / "far.tif").string());
+  ExpectExact(ErrorsOf(written, map, options.cells, *ground, 200, 7), "far");
+}
+
 // Slopes of up to 0.3: half a degree; and no map is both.
 TEST(HorizonMap, TheFastModeAgreesToHalfADegree) {
   const TemporaryFolder folder;

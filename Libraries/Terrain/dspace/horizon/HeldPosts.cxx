@@ -87,33 +87,47 @@ void HeldPosts::AddSpanLevels() {
   }
 }
 
-HeightSpan HeldPosts::SpanOf(const PostBlock& block) const {
-  // Of the level at which the block takes three squares a side at most.
+template<typename Take>
+void HeldPosts::ForEachSquare(const PostBlock& block, const Take& take) const {
+  // Of the level at which the block takes four squares a side at most.
   std::size_t level = 0;
-  int side = SpanSide;
-  while (std::max(block.width, block.height) > 2 * side && level + 1 < this->Spans_.size()) {
+  int shift = SpanShift;
+  while (std::max(block.width, block.height) > 3 << shift && level + 1 < this->Spans_.size()) {
     ++level;
-    side *= 2;
+    ++shift;
   }
   const SpanLevel& squares = this->Spans_[level];
-  const auto clamped = [side](std::int64_t value, int most) {
-    return int(std::clamp<std::int64_t>(value, 0, most - 1)) / side;
+  const auto clamped = [shift](std::int64_t value, int most) {
+    return int(std::clamp<std::int64_t>(value, 0, most - 1)) >> shift;
   };
   const std::int64_t left = block.column - this->Place_.column;
   const std::int64_t top = block.row - this->Place_.row;
   const int c0 = clamped(left, this->Place_.width);
   const int c1 = clamped(left + block.width - 1, this->Place_.width);
   const int r1 = clamped(top + block.height - 1, this->Place_.height);
-  const float infinity = std::numeric_limits<float>::infinity();
-  HeightSpan all = {infinity, -infinity};
   for (int r = clamped(top, this->Place_.height); r <= r1; ++r) {
     const HeightSpan* row = &squares.spans[std::size_t(r) * std::size_t(squares.columns)];
     for (int c = c0; c <= c1; ++c) {
-      all.least = std::min(all.least, row[c].least);
-      all.greatest = std::max(all.greatest, row[c].greatest);
+      take(row[c]);
     }
   }
+}
+
+HeightSpan HeldPosts::SpanOf(const PostBlock& block) const {
+  const float infinity = std::numeric_limits<float>::infinity();
+  HeightSpan all = {infinity, -infinity};
+  this->ForEachSquare(block, [&](const HeightSpan& square) {
+    all.least = std::min(all.least, square.least);
+    all.greatest = std::max(all.greatest, square.greatest);
+  });
   return all;
+}
+
+float HeldPosts::GreatestOf(const PostBlock& block) const {
+  float greatest = -std::numeric_limits<float>::infinity();
+  this->ForEachSquare(
+      block, [&](const HeightSpan& square) { greatest = std::max(greatest, square.greatest); });
+  return greatest;
 }
 
 } // namespace dspace

@@ -38,6 +38,7 @@ public:
   }
   // Bounds of the heights of a block, or of a somewhat larger one; in constant time.
   HeightSpan SpanOf(const PostBlock& block) const;
+  float GreatestOf(const PostBlock& block) const; // -infinity: no posts
 
 private:
   // Bounds of squares of posts, whose side doubles from one level to the next.
@@ -46,7 +47,10 @@ private:
     int rows = 0;
     std::vector<HeightSpan> spans;
   };
-  static constexpr int SpanSide = 8; // posts, of the finest level
+  static constexpr int SpanShift = 3;
+  static constexpr int SpanSide = 1 << SpanShift; // posts, of the finest level
+  // The squares that cover a block.
+  template<typename Take> void ForEachSquare(const PostBlock& block, const Take& take) const;
   void AddSpanLevels();
 
   PostBlock Place_;

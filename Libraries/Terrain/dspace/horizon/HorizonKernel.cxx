@@ -3,102 +3,199 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include <dspace/horizon/ForProcessors.h>
+
+// Vectors that functions here return stay in registers: all of these functions are inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
 
 namespace dspace {
 namespace {
 
-constexpr float Most = 1e30f;     // of a tangent; above: of a post without data
-constexpr float Rounding = 1e-6f; // of floats: more than that of a product, a sum and a quotient
+// Eight floats: an AVX register, or two of SSE. The compiler's own choice for loops over lanes is
+// up to five times as slow. The other loops have a fixed length and no branches, so that it
+// vectorizes them.
+using Eight = float __attribute__((vector_size(32)));
+using EightTruths = int __attribute__((vector_size(32)));
+constexpr int Vectors = HorizonGroup / 8; // of a group
+constexpr unsigned AllGroups = (1u << (HorizonLanes / HorizonGroup)) - 1u;
+constexpr int Together = 4; // steps of which it is asked at once whether they raise a horizon
 
-} // namespace
+#define DSPACE_INLINE __attribute__((always_inline))
 
-// The loops over lanes have a fixed length and no branches, so that compilers vectorize them; a
-// comparison with NaN keeps what was there.
-
-DSPACE_FOR_PROCESSORS
-void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
-                float* tangents) {
-  alignas(32) float best[HorizonLanes];
-  alignas(32) float from[HorizonLanes];
-  std::copy_n(tangents, HorizonLanes, best);
-  std::copy_n(z, HorizonLanes, from);
-  for (const EdgeStep& step : steps) {
-    const float* a = heights + step.first;
-    const float* b = heights + step.second;
-    const HorizonStep g = step.ground;
-    const float share = step.share;
-    // Divisions cost more than all else, and few places raise a horizon.
-    int raised = 0;
-    if (g.fall == 0.0f && g.rise == 1.0f && g.spread == 0.0f) { // a plane
-      for (int i = 0; i < HorizonLanes; ++i) {
-        const float over = a[i] + share * (b[i] - a[i]) - from[i];
-        raised |= -int(over - best[i] * g.away > -Rounding * std::abs(over));
-      }
-    } else {
-      for (int i = 0; i < HorizonLanes; ++i) {
-        const float h = a[i] + share * (b[i] - a[i]);
-        const float over = g.fall + g.rise * h - from[i];
-        const float away = g.away + g.spread * h;
-        raised |= -int(over - best[i] * away > -Rounding * std::abs(over));
-      }
-    }
-    if (!raised) {
-      continue;
-    }
-    for (int i = 0; i < HorizonLanes; ++i) {
-      const float h = a[i] + share * (b[i] - a[i]);
-      const float t = (g.fall + g.rise * h - from[i]) / (g.away + g.spread * h);
-      best[i] = t > best[i] ? t : best[i];
-    }
-  }
-  std::copy_n(best, HorizonLanes, tangents);
+DSPACE_INLINE inline Eight EightAt(const float* values) {
+  Eight eight;
+  std::memcpy(&eight, values, sizeof eight);
+  return eight;
 }
 
-DSPACE_FOR_PROCESSORS
-void MarchEdgesFast(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
-                    float* tangents) {
-  alignas(32) float best[HorizonLanes];
-  alignas(32) float from[HorizonLanes];
-  std::copy_n(tangents, HorizonLanes, best);
-  std::copy_n(z, HorizonLanes, from);
-  float base = 0.0f;
-  int lanes = 0;
-  for (int i = 0; i < HorizonLanes; ++i) {
-    if (std::isfinite(z[i]) && !(tangents[i] > Most)) { // else it has no data
-      base += z[i];
-      ++lanes;
+DSPACE_INLINE inline bool Any(const EightTruths& truths) {
+  using Four = long long __attribute__((vector_size(32)));
+  const Four four = reinterpret_cast<const Four&>(truths);
+  return (four[0] | four[1] | four[2] | four[3]) != 0;
+}
+
+DSPACE_INLINE inline Eight LowerThan(const Eight& values) {
+  return values - HorizonRounding * (values < 0.0f ? -values : values);
+}
+
+bool OnPlane(const HorizonStep& ground) {
+  return ground.fall == 0.0f && ground.rise == 1.0f && ground.spread == 0.0f;
+}
+
+// Tangents and heights of Count x 8 posts. A comparison with NaN keeps what was there.
+template<int Count> struct Posts {
+  Eight best[Count];
+  Eight from[Count];
+
+  DSPACE_INLINE Posts(const float* z, const float* tangents) {
+    for (int k = 0; k < Count; ++k) {
+      this->best[k] = EightAt(tangents + 8 * k);
+      this->from[k] = EightAt(z + 8 * k);
     }
   }
-  base /= float(std::max(lanes, 1));
+  DSPACE_INLINE void Raise(int k, const Eight& t) {
+    this->best[k] = t > this->best[k] ? t : this->best[k];
+  }
+  DSPACE_INLINE void Write(float* tangents) const {
+    for (int k = 0; k < Count; ++k) {
+      std::memcpy(tangents + 8 * k, &this->best[k], sizeof this->best[k]);
+    }
+  }
+};
+
+DSPACE_INLINE inline Eight HeightAt(const EdgeStep& step, const float* heights, int k) {
+  const Eight left = EightAt(heights + step.first + 8 * k);
+  return left + step.share * (EightAt(heights + step.second + 8 * k) - left);
+}
+
+template<int Count>
+DSPACE_INLINE inline void MarchPlane(const std::vector<EdgeStep>& steps, const float* heights,
+                                     const float* z, float* tangents) {
+  Posts<Count> posts(z, tangents);
   for (const EdgeStep& step : steps) {
-    const float* a = heights + step.first;
-    const float* b = heights + step.second;
-    const HorizonStep g = step.ground;
+    const float near = 1.0f / step.ground.away;
+    for (int k = 0; k < Count; ++k) {
+      posts.Raise(k, (HeightAt(step, heights, k) - posts.from[k]) * near);
+    }
+  }
+  posts.Write(tangents);
+}
+
+// Divisions cost more than all else, and few places raise a horizon: what is not above `low`, which
+// is below the tangent by more than rounding, is not divided.
+template<int Count>
+DSPACE_INLINE inline void MarchBody(const std::vector<EdgeStep>& steps, const float* heights,
+                                    const float* z, float* tangents) {
+  Posts<Count> posts(z, tangents);
+  Eight low[Count];
+  for (int k = 0; k < Count; ++k) {
+    low[k] = LowerThan(posts.best[k]);
+  }
+  const EdgeStep* const end = steps.data() + steps.size();
+  for (const EdgeStep* next = steps.data(); next != end;) {
+    const EdgeStep* const to = next + std::min<std::ptrdiff_t>(Together, end - next);
+    EightTruths raised = {};
+    for (const EdgeStep* step = next; step != to; ++step) {
+      const HorizonStep& g = step->ground;
+      for (int k = 0; k < Count; ++k) {
+        const Eight h = HeightAt(*step, heights, k);
+        raised |= g.fall + g.rise * h - posts.from[k] > low[k] * (g.away + g.spread * h);
+      }
+    }
+    for (; Any(raised) && next != to; ++next) {
+      const HorizonStep& g = next->ground;
+      for (int k = 0; k < Count; ++k) {
+        const Eight h = HeightAt(*next, heights, k);
+        posts.Raise(k, (g.fall + g.rise * h - posts.from[k]) / (g.away + g.spread * h));
+        low[k] = LowerThan(posts.best[k]);
+      }
+    }
+    next = to;
+  }
+  posts.Write(tangents);
+}
+
+template<int Count>
+DSPACE_INLINE inline void MarchLevel(const std::vector<EdgeStep>& steps, float base,
+                                     const float* heights, const float* z, float* tangents) {
+  Posts<Count> posts(z, tangents);
+  for (const EdgeStep& step : steps) {
+    const HorizonStep& g = step.ground;
     const float near = 1.0f / (g.away + g.spread * base);
     const float second = step.share * g.rise;
     const float first = g.rise - second;
-    for (int i = 0; i < HorizonLanes; ++i) {
-      const float t = (g.fall + (first * a[i] + second * b[i]) - from[i]) * near;
-      best[i] = t > best[i] ? t : best[i];
+    for (int k = 0; k < Count; ++k) {
+      const Eight h = first * EightAt(heights + step.first + 8 * k) +
+                      second * EightAt(heights + step.second + 8 * k);
+      posts.Raise(k, (g.fall + h - posts.from[k]) * near);
     }
   }
-  std::copy_n(best, HorizonLanes, tangents);
+  posts.Write(tangents);
+}
+
+// Calls march(lane, count) for the lanes of the groups, `count` x 8 of them at once.
+template<typename March> DSPACE_INLINE inline void ForGroups(unsigned groups, const March& march) {
+  if (groups == AllGroups) {
+    march(0, std::integral_constant<int, HorizonLanes / 8>());
+    return;
+  }
+  for (int lane = 0; lane < HorizonLanes; lane += HorizonGroup) {
+    if (groups >> (lane / HorizonGroup) & 1u) {
+      march(lane, std::integral_constant<int, Vectors>());
+    }
+  }
+}
+
+} // namespace
+
+DSPACE_FOR_PROCESSORS
+void MarchEdges(const std::vector<EdgeStep>& steps, unsigned groups, const float* heights,
+                const float* z, float* tangents) {
+  if (!steps.empty() && OnPlane(steps.back().ground)) {
+    ForGroups(groups, [&](int lane, auto count) DSPACE_INLINE {
+      MarchPlane<count>(steps, heights + lane, z + lane, tangents + lane);
+    });
+  } else {
+    ForGroups(groups, [&](int lane, auto count) DSPACE_INLINE {
+      MarchBody<count>(steps, heights + lane, z + lane, tangents + lane);
+    });
+  }
 }
 
 DSPACE_FOR_PROCESSORS
-bool MayRaiseLanes(float crest, float over, float under, float slack, const float* z,
-                   const float* tangents) {
-  int may = 0;
-  for (int i = 0; i < HorizonLanes; ++i) {
-    const float up = crest - z[i];
-    const float near = up * over;
-    const float far = up * under;
-    may |= -int((near > far ? near : far) > tangents[i] + slack);
+void MarchEdgesFast(const std::vector<EdgeStep>& steps, unsigned groups, float base,
+                    const float* heights, const float* z, float* tangents) {
+  ForGroups(groups, [&](int lane, auto count) DSPACE_INLINE {
+    MarchLevel<count>(steps, base, heights + lane, z + lane, tangents + lane);
+  });
+}
+
+DSPACE_FOR_PROCESSORS
+unsigned MayRaise(const GroupCrests& crests, const LaneReach& reach, float slack, const float* z,
+                  const float* tangents) {
+  constexpr int Count = int(std::tuple_size_v<GroupCrests>);
+  EightTruths may[Count];
+  EightTruths all = {};
+  for (int g = 0; g < Count; ++g) {
+    may[g] = EightTruths{};
+    for (int k = 0; k < Vectors; ++k) {
+      const int at = g * HorizonGroup + 8 * k;
+      const Eight up = crests[std::size_t(g)] - EightAt(z + at);
+      const Eight near = up * reach.over;
+      const Eight far = up * reach.under;
+      may[g] |= (near > far ? near : far) > EightAt(tangents + at) + slack;
+    }
+    all |= may[g];
   }
-  return may != 0;
+  unsigned groups = 0;
+  for (int g = 0; Any(all) && g < Count; ++g) {
+    groups |= unsigned(Any(may[g])) << g;
+  }
+  return groups;
 }
 
 DSPACE_FOR_PROCESSORS

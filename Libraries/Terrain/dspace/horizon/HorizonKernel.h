@@ -2,6 +2,7 @@
 #ifndef DSPACE_TERRAIN_HORIZONKERNEL_H
 #define DSPACE_TERRAIN_HORIZONKERNEL_H
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -9,6 +10,10 @@ namespace dspace {
 
 // Posts of a row that are swept together.
 inline constexpr int HorizonLanes = 64;
+// Of them, posts that are skipped together.
+inline constexpr int HorizonGroup = 16;
+// Of floats: more than that of a product, a sum and a quotient.
+inline constexpr float HorizonRounding = 1e-6f;
 
 // The tangent of the elevation of ground of height h from height z (HorizonPath).
 struct HorizonStep {
@@ -35,21 +40,29 @@ struct CellStep {
   float down;
 };
 
-// Raise `tangents` of HorizonLanes posts of heights `z` to those of the steps. NaN is no ground.
-void MarchEdges(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
-                float* tangents);
-// The same, with all ground as far away as that of the lanes' mean height: the tangents err by the
+// Raise `tangents` of the posts of `groups`, a bit each, of HorizonLanes of heights `z` to those of
+// the steps, which are all of a plane or all of a body. NaN is no ground.
+void MarchEdges(const std::vector<EdgeStep>& steps, unsigned groups, const float* heights,
+                const float* z, float* tangents);
+// The same, with all ground as far away as that of height `base`: the tangents err by the
 // difference over the body's radius.
-void MarchEdgesFast(const std::vector<EdgeStep>& steps, const float* heights, const float* z,
-                    float* tangents);
+void MarchEdgesFast(const std::vector<EdgeStep>& steps, unsigned groups, float base,
+                    const float* heights, const float* z, float* tangents);
+// Raises all of them.
 // `width`: of a row of heights.
 void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
                 float lane, const float* z, float* tangents);
 
-// Whether ground of height `crest` at distances of 1 / over to 1 / under may raise one of
-// HorizonLanes posts by more than `slack`.
-bool MayRaiseLanes(float crest, float over, float under, float slack, const float* z,
-                   const float* tangents);
+// Distances [m] of 1 / over to 1 / under.
+struct LaneReach {
+  float over;
+  float under;
+};
+using GroupCrests = std::array<float, HorizonLanes / HorizonGroup>; // [m]
+// The groups of which a post may be raised by more than `slack`, a bit each, by ground within reach
+// that is up to the group's crest high.
+unsigned MayRaise(const GroupCrests& crests, const LaneReach& reach, float slack, const float* z,
+                  const float* tangents);
 float LeastOf(const std::vector<float>& values);
 // Elevations [deg] of tangents; `none` of those that are `noTangent`, NaN of NaN. To 2e-5 degrees.
 void ElevationsOf(const float* tangents, int count, float noTangent, float none, float* elevations);

@@ -10,6 +10,7 @@
 #include <dspace/Error.h>
 
 #include <dspace/horizon/EdgeCrossings.h>
+#include <dspace/horizon/EdgeRuns.h>
 #include <dspace/horizon/HorizonKernel.h>
 #include <dspace/horizon/HorizonPath.h>
 #include <dspace/horizon/SweptPosts.h>
@@ -19,6 +20,8 @@ namespace {
 
 constexpr int Rows = 32;              // of posts that share what is read
 constexpr int Band = 32;              // posts of distance that share what is read
+constexpr double FarBand = 0.25;      // of the distance, where posts are held and paths straight
+constexpr double RunPosts = 8.0;      // of edges whose heights are bounded together
 constexpr double PerPost = 2.0;       // places of a coarser level in a post
 constexpr double Widest = 2048;       // columns that are read at once
 constexpr double WidestFine = 131072; // the same about a pole, with HorizonOptions::fine
@@ -101,7 +104,7 @@ public:
              s >= (options.posts - 1e-6) * this->MetresOf(level)) {
         ++level;
       }
-      const double band = s + Band * this->MetresOf(level);
+      const double band = s + this->BandFrom(s, level);
       const double to = s < near ? std::min(band, near) : band;
       const bool hidden = s > 0.0 && this->NothingHigherFrom(s);
       if (s >= near && hidden) {
@@ -131,6 +134,12 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
+  // [m] of distance that share what is read.
+  double BandFrom(double s, int level) const {
+    const double band = Band * this->MetresOf(level);
+    return this->Placement_.OnBody() || !this->Sweep_.Held() ? band : std::max(band, FarBand * s);
+  }
+
   double MetresOf(int level) const { return std::ldexp(this->Cell_, level); }
 
   double Left() const {
@@ -159,6 +168,8 @@ private:
     this->Heights_.assign(std::size_t(Rows) * HorizonLanes, 0.0f);
     this->Valid_.assign(this->Heights_.size(), 0);
     for (int j = 0; j < this->Block_.height; ++j) {
+      float sum = 0.0f;
+      int count = 0;
       for (int i = 0; i < this->Block_.width; ++i) {
         const float h = ground.heights[std::size_t(j) * this->Every_ * ground.place.width +
                                        std::size_t(i) * this->Every_] +
@@ -169,9 +180,14 @@ private:
           this->Valid_[at] = 1;
           this->Least_ = std::min(this->Least_, h);
           this->Greatest_ = std::max(this->Greatest_, h);
+          sum += h;
+          ++count;
         }
       }
+      this->Bases_.push_back(sum / float(std::max(count, 1)));
     }
+    const auto [low, high] = this->Sweep_.Options().heights;
+    this->Span_ = {std::min(float(low), this->Least_), std::max(float(high), this->Greatest_)};
     this->Clear();
   }
 
@@ -387,21 +403,58 @@ private:
     }
   }
 
-  // Whether ground of a span between two places may raise a post of row j.
-  bool MayRaise(int j, const HeightSpan& span, const Knot& first, const Knot& last) const {
-    const HorizonPath::Point& a = first.ground;
-    const HorizonPath::Point& b = last.ground;
-    const double high = span.greatest;
-    // Ground below the sphere falls off less than its foot: |z| (1 - cosine).
-    const double top = a.fall + std::max(a.rise * high, b.rise * high);
-    const double least = a.away + std::min({a.spread * span.least, b.spread * span.least, 0.0});
-    const double most = b.away + std::max({b.spread * high, 0.0});
-    const auto over = float(1.0000005 / std::max(least, 1e-9));
-    const auto under = float(0.9999995 / most);
-    const auto crest = float(top);
-    return MayRaiseLanes(crest, over, under, this->Slack_,
-                         &this->Heights_[std::size_t(j) * HorizonLanes],
-                         &this->Tangents_[std::size_t(j) * HorizonLanes]);
+  // Groups of lanes, a bit each.
+  using Groups = unsigned;
+  static constexpr int GroupCount = HorizonLanes / HorizonGroup;
+
+  // Those that hold posts of the block.
+  Groups AllGroups() const {
+    return (1u << ((this->Block_.width + HorizonGroup - 1) / HorizonGroup)) - 1u;
+  }
+
+  // Of `groups` of row j, those whose horizon may be raised by ground between posts of level 0,
+  // which are those of lane 0.
+  Groups MayRaiseBy(int j, const SweptPosts& ground, const PostExtent& posts,
+                    const GroundBounds& bounds, const LaneReach& reach, Groups groups) const {
+    GroupCrests crests;
+    crests.fill(-Infinite);
+    for (int g = 0; g < GroupCount; ++g) {
+      if (!(groups & 1u << g)) {
+        continue;
+      }
+      const PostBlock seen = {0, posts.left + std::int64_t(g) * HorizonGroup * this->Every_,
+                              posts.top,
+                              int(posts.right - posts.left) + 1 + (HorizonGroup - 1) * this->Every_,
+                              int(posts.bottom - posts.top) + 1};
+      crests[std::size_t(g)] = bounds.Crest(ground.held->GreatestOf(seen));
+    }
+    return this->MayRaise(j, crests, reach);
+  }
+
+  Groups MayRaise(int j, const GroupCrests& crests, const LaneReach& reach) const {
+    const std::size_t at = std::size_t(j) * HorizonLanes;
+    return dspace::MayRaise(crests, reach, this->Slack_, &this->Heights_[at], &this->Tangents_[at]);
+  }
+
+  // The same for ground between knots.
+  Groups MayRaiseBetween(int j, const SweptPosts& ground, const std::vector<Knot>& knots) const {
+    GroundBounds bounds;
+    for (const Knot* knot : {&knots.front(), &knots.back()}) {
+      const HorizonPath::Point& at = knot->ground;
+      bounds.Add({float(at.fall), float(at.rise), float(at.away), float(at.spread)});
+    }
+    const LaneReach reach = bounds.Reach(this->Span_);
+    if (!ground.held) {
+      GroupCrests crests;
+      crests.fill(bounds.Crest(ground.span.greatest));
+      return this->MayRaise(j, crests, reach);
+    }
+    PostExtent posts;
+    for (const Knot& knot : knots) {
+      posts.Add(FloorOf(knot.x), FloorOf(knot.y));
+      posts.Add(FloorOf(knot.x) + 1, FloorOf(knot.y) + 1);
+    }
+    return this->MayRaiseBy(j, ground, posts, bounds, reach, this->AllGroups());
   }
 
   // A place at a time, of which all lanes are read: where columns crowd.
@@ -457,18 +510,21 @@ private:
       return true;
     }
     std::vector<Knot> knots;
-    std::vector<EdgeStep> edges;
     std::vector<CellStep> cells;
-    std::optional<std::int64_t> edgesRow; // the row that the edges are of, on a plane
+    std::optional<std::int64_t> runsRow; // the row that the runs are of, on a plane
     for (int j = 0; j < this->Block_.height; ++j) {
       this->Follow(j, level, s0, s1, knots);
-      float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
-      const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
-      if (s0 > 0.0 && !this->MayRaise(j, ground.span, knots.front(), knots.back())) {
+      Groups groups = this->AllGroups();
+      if (s0 > 0.0) {
+        groups = this->MayRaiseBetween(j, ground, knots);
+      }
+      if (!groups) {
         this->Report_.skipped +=
             std::uint64_t(HorizonLanes * PerPost * (s1 - s0) / this->MetresOf(level));
         continue;
       }
+      float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
+      const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
       if (level > this->Block_.level) {
         cells.clear();
         this->AddCells(ground, level, knots, cells);
@@ -480,25 +536,53 @@ private:
       const std::int64_t row = this->Block_.row + std::int64_t(j) * this->Every_;
       const bool regular = this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
                            this->Starts_[std::size_t(j)].y() == double(row) * this->Spacing_;
-      if (!regular || !edgesRow) {
-        edges.clear();
-        this->AddEdges(ground, knots, edges);
-        edgesRow = regular ? std::optional<std::int64_t>(row) : std::nullopt;
+      if (!regular || !runsRow) {
+        this->FindRuns(ground, s0, s1, knots);
+        runsRow = regular ? std::optional<std::int64_t>(row) : std::nullopt;
       }
-      const std::ptrdiff_t shift =
-          regular ? ground.At(ground.place.column, row) - ground.At(ground.place.column, *edgesRow)
-                  : 0;
-      (this->Sweep_.Options().fast ? MarchEdgesFast : MarchEdges)(edges, ground.Heights() + shift,
-                                                                  z, tangents);
-      this->Report_.steps += edges.size() * HorizonLanes;
+      this->MarchRuns(j, ground, regular ? row - *runsRow : 0, s0 > 0.0, groups);
     }
     return true;
   }
 
+  // The runs, `down` rows below those that they are of. `far`: not all of the first run counts.
+  void MarchRuns(int j, const SweptPosts& ground, std::int64_t down, bool far, Groups groups) {
+    const std::ptrdiff_t shift = ground.At(ground.place.column, ground.place.row + down) -
+                                 ground.At(ground.place.column, ground.place.row);
+    for (const EdgeRuns::Run& run : this->Runs_.Runs()) {
+      Groups raised = groups;
+      if (ground.held && (far || &run != &this->Runs_.Runs().front()) && !run.edges.empty()) {
+        PostExtent posts = run.posts;
+        posts.top += down;
+        posts.bottom += down;
+        raised = this->MayRaiseBy(j, ground, posts, run.ground, run.reach, groups);
+      }
+      std::uint64_t count = 0; // of lanes
+      for (int g = 0; g < GroupCount; ++g) {
+        count += (raised >> g & 1u) * HorizonGroup;
+      }
+      this->Report_.steps += run.edges.size() * count;
+      this->Report_.skipped += run.edges.size() * (HorizonLanes - count);
+      const std::size_t at = std::size_t(j) * HorizonLanes;
+      if (this->Sweep_.Options().fast) {
+        MarchEdgesFast(run.edges, raised, this->Bases_[std::size_t(j)], ground.Heights() + shift,
+                       &this->Heights_[at], &this->Tangents_[at]);
+      } else {
+        MarchEdges(run.edges, raised, ground.Heights() + shift, &this->Heights_[at],
+                   &this->Tangents_[at]);
+      }
+    }
+  }
+
   // The edges of the level's triangles that a row crosses between its knots.
-  void AddEdges(const SweptPosts& ground, const std::vector<Knot>& knots,
-                std::vector<EdgeStep>& edges) const {
+  void FindRuns(const SweptPosts& ground, double s0, double s1, const std::vector<Knot>& knots) {
     constexpr double Snap = 1e-6; // posts
+    const double posts = (s1 - s0) / this->Metres_;
+    const double sparse =
+        this->Sweep_.Options().fast
+            ? std::max(1.0, s0 / (0.5 * HorizonOptions::FastExact * this->Metres_))
+            : 1.0;
+    this->Runs_.Clear(std::max(1, int(posts / (RunPosts * sparse))), s0, s1);
     const double least = 1e-6 * this->MetresOf(this->Block_.level);
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
       const Knot& a = knots[k];
@@ -518,8 +602,10 @@ private:
         const std::ptrdiff_t first = ground.At(c, r);
         const std::ptrdiff_t second = ground.At(c + right, r + down);
         if (ground.Has(c, r, (HorizonLanes - 1) * this->Every_)) {
-          edges.push_back({StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
-                           share < Snap ? first : second, float(share)});
+          this->Runs_.Add(a.s + t * (b.s - a.s),
+                          {StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
+                           share < Snap ? first : second, float(share)},
+                          c, r, right, down);
         }
       };
       // Near a pole a step along a parallel crosses any number of columns.
@@ -537,6 +623,7 @@ private:
       }
       ForEachCrossing(a.x, a.y, b.x, b.y, add);
     }
+    this->Runs_.Close(this->Span_);
   }
 
   // With HorizonOptions::fast: whether an edge that is crossed at a distance [m] counts. Of distant
@@ -601,6 +688,9 @@ private:
   std::vector<float> Heights_; // rows of HorizonLanes
   std::vector<char> Valid_;
   std::vector<float> Tangents_;
+  std::vector<float> Bases_; // the mean height of each row
+  EdgeRuns Runs_;
+  HeightSpan Span_ = {0.0f, 0.0f}; // that all ground lies between
   float Least_ = Infinite;
   float Greatest_ = -Infinite;
 };
