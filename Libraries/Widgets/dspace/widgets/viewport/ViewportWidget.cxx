@@ -186,6 +186,7 @@ struct ViewportWidget::Internals {
   std::optional<int> ownSamples; // while the camera moves
   QImage picture;                // where textures are not shared
   bool resizeLater = false;      // the viewport was not there
+  bool drawLater = false;        // with the next paint
   QString failure;               // of the last drawing; empty: none
   int pictures = 0;
 
@@ -230,7 +231,18 @@ struct ViewportWidget::Internals {
     });
   }
 
+  // With the next paint: a window that is made or resized settles its sizes first.
+  void DrawSettled() {
+    if (this->surface) {
+      this->surface->update();
+    } else {
+      this->drawLater = true;
+      this->widget->update();
+    }
+  }
+
   void Draw() {
+    this->drawLater = false;
     if (this->surface) {
       this->surface->update();
       return;
@@ -411,6 +423,9 @@ QSize ViewportWidget::sizeHint() const {
 
 void ViewportWidget::paintEvent(QPaintEvent*) {
   Internals& self = *this->Impl_;
+  if (self.drawLater && self.Find()) {
+    self.Draw();
+  }
   QPainter painter(this);
   if (!self.failure.isEmpty()) {
     painter.fillRect(this->rect(), Qt::black);
@@ -430,16 +445,16 @@ void ViewportWidget::resizeEvent(QResizeEvent*) {
   }
   if (this->Impl_->Find()) {
     this->Impl_->Resize();
+    this->Impl_->DrawSettled();
   } else {
     this->Impl_->resizeLater = true;
   }
-  this->Impl_->Look();
 }
 
 void ViewportWidget::showEvent(QShowEvent*) {
   if (this->Impl_->Find()) {
     this->Impl_->Resize();
-    this->Impl_->Draw();
+    this->Impl_->DrawSettled();
   } else {
     this->Impl_->resizeLater = true;
   }
