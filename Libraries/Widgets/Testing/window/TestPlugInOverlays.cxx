@@ -7,8 +7,8 @@
 
 #include "OneApplication.h"
 
+#include <dspace/widgets/overlay/PlugInOverlays.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/PlugInOverlays.h>
 
 namespace {
 

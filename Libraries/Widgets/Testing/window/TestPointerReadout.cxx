@@ -5,9 +5,9 @@
 #include <utility>
 
 #include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/overlay/PointerReadout.h>
 #include <dspace/widgets/settings/DisplayUnits.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/PointerReadout.h>
 
 using dspace::widgets::PointerReadout;
 using dspace::widgets::ViewportWidget;

@@ -38,6 +38,9 @@
 #include <dspace/widgets/desktop/RecentFiles.h>
 #include <dspace/widgets/measure/MeasureWidget.h>
 #include <dspace/widgets/operator/MessageWidget.h>
+#include <dspace/widgets/overlay/MeasureMarks.h>
+#include <dspace/widgets/overlay/PlugInOverlays.h>
+#include <dspace/widgets/overlay/PointerReadout.h>
 #include <dspace/widgets/scene/SceneTreeModel.h>
 #include <dspace/widgets/scene/SceneTreeWidget.h>
 #include <dspace/widgets/script/PythonText.h>
@@ -49,11 +52,8 @@
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/FileCommands.h>
 #include <dspace/widgets/window/KeyTable.h>
-#include <dspace/widgets/window/MeasureMarks.h>
 #include <dspace/widgets/window/MovieTrack.h>
-#include <dspace/widgets/window/PlugInOverlays.h>
 #include <dspace/widgets/window/PlugIns.h>
-#include <dspace/widgets/window/PointerReadout.h>
 #include <dspace/widgets/window/Shell.h>
 #include <dspace/widgets/window/ShownScenes.h>
 #include <dspace/widgets/window/TaskStrip.h>

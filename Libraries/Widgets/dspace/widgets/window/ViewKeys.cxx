@@ -5,11 +5,11 @@
 #include <QCoreApplication>
 #include <QKeyEvent>
 
+#include <dspace/widgets/overlay/MeasureMarks.h>
 #include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/timeline/TimelineWidget.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
 #include <dspace/widgets/window/KeyTable.h>
-#include <dspace/widgets/window/MeasureMarks.h>
 #include <dspace/widgets/window/MovieTrack.h>
 #include <dspace/widgets/window/ViewSelection.h>
 

@@ -9,10 +9,10 @@
 #include <QMenu>
 
 #include <dspace/proto/commands.pb.h>
+#include <dspace/widgets/overlay/PointerReadout.h>
 #include <dspace/widgets/script/PythonText.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/PointerReadout.h>
 
 namespace dspace::widgets {
 namespace {

@@ -15,8 +15,8 @@
 
 #include <dspace/Error.h>
 #include <dspace/widgets/desktop/MenuKeys.h>
+#include <dspace/widgets/overlay/OverlayPane.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/OverlayPane.h>
 
 namespace dspace::widgets {
 namespace {

@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/ProjectedPoints.h>
+#include <dspace/widgets/overlay/ProjectedPoints.h>
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/PointerReadout.h>
+#include <dspace/widgets/overlay/PointerReadout.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/MeasureMarks.h>
+#include <dspace/widgets/overlay/MeasureMarks.h>
 
 #include <algorithm>
 #include <exception>
@@ -8,10 +8,10 @@
 
 #include <dspace/proto/commands.pb.h>
 #include <dspace/widgets/measure/MeasureWidget.h>
+#include <dspace/widgets/overlay/OverlayPane.h>
+#include <dspace/widgets/overlay/ProjectedPoints.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/OverlayPane.h>
-#include <dspace/widgets/window/ProjectedPoints.h>
 
 namespace dspace::widgets {
 namespace {

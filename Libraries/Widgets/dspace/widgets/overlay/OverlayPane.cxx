@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/OverlayPane.h>
+#include <dspace/widgets/overlay/OverlayPane.h>
 
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include <dspace/widgets/window/PlugInOverlays.h>
+#include <dspace/widgets/overlay/PlugInOverlays.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +12,10 @@
 #include <QPainterPath>
 
 #include <dspace/Error.h>
+#include <dspace/widgets/overlay/OverlayPane.h>
+#include <dspace/widgets/overlay/ProjectedPoints.h>
 #include <dspace/widgets/viewport/ShownSession.h>
 #include <dspace/widgets/viewport/ViewportWidget.h>
-#include <dspace/widgets/window/OverlayPane.h>
-#include <dspace/widgets/window/ProjectedPoints.h>
 
 namespace dspace::widgets {
 namespace {
