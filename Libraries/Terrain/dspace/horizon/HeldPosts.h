@@ -33,8 +33,9 @@ public:
   const float* Heights() const { return this->Heights_.data(); }
   std::ptrdiff_t At(std::int64_t c, std::int64_t r) const {
     const auto column = std::ptrdiff_t(c - this->Place_.column);
-    return std::ptrdiff_t(r - this->Place_.row) * this->Place_.width +
-           column % this->Every_ * this->Share_ + column / this->Every_;
+    const std::ptrdiff_t row = std::ptrdiff_t(r - this->Place_.row) * this->Place_.width;
+    return row + (this->Every_ == 1 ? column // divisions cost more than all else
+                                    : column % this->Every_ * this->Share_ + column / this->Every_);
   }
   // Bounds of the heights of a block, or of a somewhat larger one; in constant time.
   HeightSpan SpanOf(const PostBlock& block) const;

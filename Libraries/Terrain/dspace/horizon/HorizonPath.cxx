@@ -33,7 +33,8 @@ HorizonPath::HorizonPath(const PostPlacement& placement, const Eigen::Vector2d& 
     this->PerMetre_ = placement.SceneToPost().linear() * Eigen::Vector2d(east, north);
     return;
   }
-  this->Longitude_ = placement.Angles(post).x();
+  const double longitude = placement.Angles(post).x();
+  this->Meridian_ = {std::cos(longitude), std::sin(longitude)};
   const BodyEllipsoid& body = placement.Body();
   if (!body.Spherical()) {
     this->Foot_ = body.Point(this->Up_, 0.0);
@@ -63,7 +64,7 @@ HorizonPath::Point HorizonPath::At(double distance) const {
   Point point;
   if (this->Placement_.GetKind() == PostPlacement::Kind::Sphere) {
     const double latitude = std::atan2(vertical.z(), vertical.head<2>().norm());
-    const double cl = std::cos(this->Longitude_), sl = std::sin(this->Longitude_);
+    const double cl = this->Meridian_.x(), sl = this->Meridian_.y();
     const double east =
         std::atan2(cl * vertical.y() - sl * vertical.x(), cl * vertical.x() + sl * vertical.y());
     point.post = {this->Post_.x() + east / this->Placement_.Step().x(),

@@ -46,10 +46,10 @@ private:
   Eigen::Vector2d Post_;
   Eigen::Vector2d PerMetre_ = Eigen::Vector2d::Zero(); // plane: posts a metre
   Eigen::Vector3d Up_;
-  Eigen::Vector3d Along_;        // level, in the azimuth
-  Eigen::Vector3d AlongNormals_; // as the directions of verticals turn on the way
-  Eigen::Vector3d Foot_;         // of the post, on an ellipsoid
-  double Longitude_ = 0.0;       // of the post
+  Eigen::Vector3d Along_;                 // level, in the azimuth
+  Eigen::Vector3d AlongNormals_;          // as the directions of verticals turn on the way
+  Eigen::Vector3d Foot_;                  // of the post, on an ellipsoid
+  Eigen::Vector2d Meridian_ = {1.0, 0.0}; // cosine and sine of the longitude of the post
 };
 
 } // namespace dspace

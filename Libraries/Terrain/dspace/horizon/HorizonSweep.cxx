@@ -536,13 +536,49 @@ private:
       const std::int64_t row = this->Block_.row + std::int64_t(j) * this->Every_;
       const bool regular = this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
                            this->Starts_[std::size_t(j)].y() == double(row) * this->Spacing_;
-      if (!regular || !runsRow) {
-        this->FindRuns(ground, s0, s1, knots);
-        runsRow = regular ? std::optional<std::int64_t>(row) : std::nullopt;
+      if (!regular) {
+        this->MarchParts(j, ground, knots, groups);
+        continue;
       }
-      this->MarchRuns(j, ground, regular ? row - *runsRow : 0, s0 > 0.0, groups);
+      if (!runsRow) {
+        this->FindRuns(ground, knots);
+        runsRow = row;
+      }
+      this->MarchRuns(j, ground, row - *runsRow, s0 > 0.0, groups);
     }
     return true;
+  }
+
+  // [m] of a path whose edges are bounded together.
+  double RunFrom(double s) const {
+    const double sparse = this->Sweep_.Options().fast
+                              ? std::max(1.0, s / (0.5 * HorizonOptions::FastExact * this->Metres_))
+                              : 1.0;
+    return RunPosts * sparse * this->Metres_;
+  }
+
+  // Finds the edges of a path of its own only where they may count.
+  void MarchParts(int j, const SweptPosts& ground, const std::vector<Knot>& knots, Groups groups) {
+    for (std::size_t a = 0; a + 1 < knots.size();) {
+      const double enough = 0.75 * this->RunFrom(knots[a].s);
+      std::size_t b = a + 1;
+      while (b + 1 < knots.size() && knots[b].s - knots[a].s < enough) {
+        ++b;
+      }
+      this->Part_.assign(knots.begin() + std::ptrdiff_t(a), knots.begin() + std::ptrdiff_t(b) + 1);
+      Groups raised = groups;
+      if (knots[a].s > 0.0 && ground.held) {
+        raised &= this->MayRaiseBetween(j, ground, this->Part_);
+      }
+      if (raised) {
+        this->FindRuns(ground, this->Part_);
+        this->MarchRuns(j, ground, 0, this->Runs_.Runs().size() > 1, raised);
+      } else {
+        this->Report_.skipped +=
+            std::uint64_t(HorizonLanes * PerPost * (knots[b].s - knots[a].s) / this->Metres_);
+      }
+      a = b;
+    }
   }
 
   // The runs, `down` rows below those that they are of. `far`: not all of the first run counts.
@@ -575,14 +611,11 @@ private:
   }
 
   // The edges of the level's triangles that a row crosses between its knots.
-  void FindRuns(const SweptPosts& ground, double s0, double s1, const std::vector<Knot>& knots) {
+  void FindRuns(const SweptPosts& ground, const std::vector<Knot>& knots) {
     constexpr double Snap = 1e-6; // posts
-    const double posts = (s1 - s0) / this->Metres_;
-    const double sparse =
-        this->Sweep_.Options().fast
-            ? std::max(1.0, s0 / (0.5 * HorizonOptions::FastExact * this->Metres_))
-            : 1.0;
-    this->Runs_.Clear(std::max(1, int(posts / (RunPosts * sparse))), s0, s1);
+    const double s0 = knots.front().s;
+    const double s1 = knots.back().s;
+    this->Runs_.Clear(std::max(1, int((s1 - s0) / this->RunFrom(s0))), s0, s1);
     const double least = 1e-6 * this->MetresOf(this->Block_.level);
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
       const Knot& a = knots[k];
@@ -690,6 +723,7 @@ private:
   std::vector<float> Tangents_;
   std::vector<float> Bases_; // the mean height of each row
   EdgeRuns Runs_;
+  std::vector<Knot> Part_;         // of a path
   HeightSpan Span_ = {0.0f, 0.0f}; // that all ground lies between
   float Least_ = Infinite;
   float Greatest_ = -Infinite;

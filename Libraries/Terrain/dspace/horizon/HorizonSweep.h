@@ -55,7 +55,8 @@ struct HorizonReport {
 // body's curvature, on a plane to the end of the data. A stencil march: along a row of posts every
 // place has the same offsets and weights (within 32 posts of a pole's chart, to second order, and
 // with HorizonOptions::fine within as many as differ by 5e-4 of a distance at most).
-// Bands of distance whose greatest height cannot raise a row's horizon are skipped.
+// Bands of distance whose greatest height cannot raise a row's horizon are skipped, and where posts
+// are held runs of some 8 posts that cannot raise the horizon of a group of 16 lanes.
 //
 // Holes, and what lies outside the data, are no occluders. Where nothing is in sight, the tangent
 // is None; where the post itself has no data, NaN. The last post of a row or column that a level
