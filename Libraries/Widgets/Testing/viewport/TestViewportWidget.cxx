@@ -325,3 +325,21 @@ TEST_P(WidgetTest, MakesTheViewportsOfASceneItself) {
   const ViewportWidget again(scene, "front"); // in a new context
   EXPECT_THROW(ViewportWidget(scene, "none"), dspace::Error);
 }
+
+// Of the sizes that a layout tries, none is drawn, but by a QOpenGLWidget, which draws at each.
+TEST_P(WidgetTest, SizesAreSettledBeforeTheFirstPicture) {
+  const auto viewport = View("front");
+  QWidget window;
+  ViewportWidget widget(viewport, &window, Path());
+  window.resize(500, 400);
+  widget.resize(100, 100);
+  window.show();
+  for (const int width : {120, 250, 333}) {
+    widget.resize(width, 200);
+  }
+  EXPECT_TRUE(GetParam() || widget.ShownPictures() == 0) << widget.ShownPictures();
+  ASSERT_TRUE(Wait(widget));
+  EXPECT_EQ(viewport->GetWidth(), 333);
+  EXPECT_TRUE(GetParam() || widget.ShownPictures() == 1) << widget.ShownPictures();
+  EXPECT_EQ(Differing(widget), 0);
+}
