@@ -132,7 +132,7 @@ def main():
         section = report.section("Light around the site")
         section.text("A lunation by steps of two hours, two metres above the ground; obstacles are the generated terrain.")
         section.figure(figure(lambda f: draw_maps(f, maps(scene, terrain, options.out, start, spacing), (x, y)), (9.0, 3.4)),
-                       "Mean part of the Sun's disc, longest night, and time with the Earth over the horizon. The cross is the site.")
+                       "Mean part of the Sun's disc, longest night, and time in sight of a station that sees the pole 10 degrees high. The cross is the site.")
 
         found = ridge(scene, report, start, end)
         if found:

@@ -111,7 +111,10 @@ def test_stations_and_permanent_shadow(capsys, moon, tmp_path):
     (("viewshed", "--site", "10.5,20.5", "--radius", "0", "--out", "a.tif"), "--radius 0.0: accepted: more than 0 m"),
     (("viewshed", "--site", "10.5,20.5", "--height", "-1", "--out", "a.tif"), "height"),
     (("illumination", "--from", "2026-01-01", "--to", "2026-01-01", "--out", "a.tif"), "the span from the start to the end is 0"),
+    (("illumination", "--from", "2026-01-01", "--to", "2026-01-02", "--out", "a.tif"), "wall.tif': it has no longitudes and latitudes, so"),
     (("illumination", "--from", "2026-01-01", "--to", "2026-01-02", "--step", "0", "--out", "a.tif"), "--step 0.0"),
+    (("illumination", "--from", "2026-01-01", "--to", "2026-01-02", "--horizons", "none.tif", "--height", "0", "--out", "a.tif"),
+     "--fast, --height, --azimuths: accepted: without --horizons"),
     (("illumination", "--from", "2026-01-01", "--to", "2026-01-02", "--horizons", "none.tif", "--out", "a.tif"),
      "there is no such file"),
 ])

@@ -11,7 +11,7 @@ import pytest
 import dspace.vtk  # noqa: F401  (VTK's modules)
 from command_support import R, run, write_moon, write_wall
 from needs import needs_module
-from terrain_support import gdal
+from terrain_support import gdal, write_raster
 
 
 @pytest.fixture
@@ -46,6 +46,20 @@ def test_lines_over_a_wall(capsys, wall, tmp_path):
     rows = list(csv.DictReader(open(tmp_path / "lines.csv")))
     assert [row["clear"] for row in rows] == ["0", "1"] and rows[1]["obstacle_distance_m"] == ""
     assert float(rows[0]["clearance_m"]) == pytest.approx(-18.0, abs=1e-4)
+
+
+def test_a_line_over_a_hole_says_so(capsys, tmp_path):
+    z = np.zeros((41, 201), np.float32)
+    z[:, 80:120] = np.nan
+    hole = write_raster(tmp_path / "hole.tif", z)
+    lines = ("--terrain", hole, "--from", "50.5,20.5,2", "--to", "150.5,20.5,2", "--to", "70.5,20.5,2")
+    code, out, err = run(capsys, "los", *lines)
+    assert code == 0, err
+    first, second = out.splitlines()
+    assert "clear" in first and "% of it has no ground below it, where nothing can hide it" in first and "no ground" not in second
+    code, out, err = run(capsys, "los", *lines, "--json")
+    # Posts are 1 m apart: from 79.5 to 120.5 of 100 m.
+    assert [line["no_ground_fraction"] for line in json.loads(out)["lines"]] == [pytest.approx(0.41, abs=0.002), 0.0]
 
 
 def test_the_moons_curvature_counts_unless_it_is_told_not_to(capsys, moon):

@@ -231,6 +231,8 @@ def test_the_command(capsys, tmp_path):
     assert before == {path.name: path.stat().st_mtime_ns for path in (tmp_path / "maps").glob("horizons*")} and len(before) == 2
     assert (tmp_path / "sites.png").read_bytes().startswith(b"\x89PNG")
     for words, text in ((("--radius", 0), "--radius 0.0"), (("--maps", tmp_path / "none"), "accepted: a folder that exists"),
+                        (("--azimuths", 12), "--azimuths is 12, and its maps were made with 36"), (("--cell-size", 0.1), "--cell-size is 0.1"),
+                        (("--site", "10.8,-84.5"), "the extent of --site and --radius is"), (("--fast",), "--fast is True"),
                         (("--most-slope", -1), "no cell satisfies the limits"), (("--out", "a.tif"), "accepted: a name with .json")):
         code, _, err = run(capsys, *command, *words)
         assert code == 1 and text in err, err

@@ -409,3 +409,14 @@ def test_profiles_with_the_vehicles_own_shadow(scene):
         scene.power_profile(site, dspace.ProjectedAreas(np.ones(3), 0.0, 10.0), start, end)
     with pytest.raises(dspace.InvalidArgument, match="its elevations run from 10 to 0"):
         scene.power_profile(site, dspace.ProjectedAreas(np.ones((2, 3)), 10.0, 0.0), start, end)
+
+
+def test_a_target_of_the_command_is_a_file_whatever_its_name(tmp_path):
+    from dspace.command_line.contacts import target_of
+    path = tmp_path / "as_flown.asc"
+    path.write_text("an OEM")
+    assert target_of(str(path)) == dspace.Orbiter(str(path))
+    assert target_of(f"{path}:moon") == dspace.Orbiter(str(path), "moon")
+    assert target_of("none.oem:moon") == dspace.Orbiter("none.oem", "moon")
+    assert target_of("sun") == "sun"
+    assert target_of("earth:10,20").body == "earth"

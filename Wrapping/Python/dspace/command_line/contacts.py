@@ -1,4 +1,5 @@
 """`dspace contacts`: when bodies, spacecraft and stations stand above the horizon of a site."""
+import pathlib
 import sys
 
 from dspace.command_line import Failed
@@ -6,14 +7,14 @@ from dspace.command_line.measure_ground import opened, out_of, place_of, text_of
 from dspace.command_line.spans import Span, add_span
 
 STEP = 60.0  # [s]
-FILES = (".oem", ".xyzv")
+FILES = (".oem", ".xyzv")  # whatever an existing file is called, it is one of these
 
 
 def add_arguments(parser):
     add_span(parser, "a file of the contacts: .json, .csv, .html (a report), or .png (a bar for each)", STEP)
     parser.add_argument("--target", action="append", required=True, metavar="BODY[:LON,LAT[,H]]|FILE[:BODY]|FRAME",
                         help="a body or spacecraft (a name or NAIF id); a station on a body: longitude (east), geodetic "
-                        "latitude [deg], height above the ellipsoid [m]; an .oem or .xyzv file about BODY (default: the centre that it "
+                        "latitude [deg], height above the ellipsoid [m]; a file, an OEM or .xyzv, about BODY (default: the centre that it "
                         "names); with --recording the path of a frame (/orbiter); may be given several times")
     parser.add_argument("--station-mask", type=float, default=0.0, metavar="E",
                         help="least elevation of the site over a station's horizontal [deg] (default: 0)")
@@ -22,11 +23,15 @@ def add_arguments(parser):
     parser.set_defaults(run=run)
 
 
+def is_file(text):
+    return text.lower().endswith(FILES) or pathlib.Path(text).is_file()
+
+
 def target_of(text):
     import dspace
     head, colon, body = text.rpartition(":")
-    path = head if head.lower().endswith(FILES) else text
-    if path.lower().endswith(FILES):
+    path = head if is_file(head) else text
+    if is_file(path):
         return dspace.Orbiter(path, body if path == head else None)
     body, colon, place = text.partition(":")
     if not colon:

@@ -171,10 +171,14 @@ def draw(figure, horizon, title, paths=(), turn=0.0):
     if paths:
         shown = [row["elevation_deg"] for _, path in paths for row in path]
         foot = min(foot, max(min(shown), -5.0) - 1.0)
-        above.set_ylim(top=max(*shown, *known, 0.0) + 1.0)
+        top = max(*shown, *known, 0.0)
+        above.set_ylim(top=top + max(1.0, 0.05 * (top - foot)))
     for (name, path), colour in zip(paths, ("#d98200", "#2c56c8", "#8a2be2", "#2c7a3f", "#b3261e") * len(paths)):
         azimuths = (np.array([row["true_azimuth_deg"] for row in path]) - turn) % 360.0
-        above.plot(azimuths, [row["elevation_deg"] for row in path], ".", color=colour, markersize=1.5, label=name, zorder=1)
+        elevations = [row["elevation_deg"] for row in path]
+        above.plot(azimuths, elevations, ".", color=colour, markersize=1.5, label=name, zorder=1)
+        breaks = np.flatnonzero(np.abs(np.diff(azimuths)) > 30.0) + 1  # over the plot's edges, and about the zenith
+        above.plot(np.insert(azimuths, breaks, np.nan), np.insert(elevations, breaks, np.nan), color=colour, linewidth=0.4, zorder=1)
     if paths:
         above.legend(fontsize=8, loc="upper right", markerscale=6.0)
     above.fill_between(azimuth, elevation, foot, color="#b9b1a6", linewidth=0, zorder=2)
@@ -189,4 +193,5 @@ def draw(figure, horizon, title, paths=(), turn=0.0):
     below.set_ylabel(f"distance [{name}]")
     below.set_xlabel("azimuth [deg], clockwise from north")
     below.set_xlim(0.0, 360.0)
-    below.set_xticks(np.arange(0, 361, 45), ("N", "NE", "E", "SE", "S", "SW", "W", "NW", "N"))
+    names = ("N", "NE", "E", "SE", "S", "SW", "W", "NW", "N")
+    below.set_xticks(np.arange(0, 361, 45), [f"{name}\n{45 * k}" for k, name in enumerate(names)])

@@ -1,31 +1,33 @@
 """`dspace illumination`: the time that ground is lit by the Sun, from horizons of its cells and the ephemeris."""
 import contextlib
+import dataclasses
 import pathlib
 import sys
 import tempfile
 
 from dspace.command_line import Failed
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, place_of, source_of, text_of
-from dspace.command_line.measure_map import (add_map, common, extent_of, map_out, require_gdal, told, write_map,
+from dspace.command_line.measure_map import (Look, add_map, common, extent_of, map_out, require_gdal, told, write_map,
                                              written_to)
 
-LOOKS = {"lit_fraction": ("lit fraction of the time", "inferno", 0.0, 1.0),
-         "longest_night": ("longest night [s]", "magma_r", 0.0, None),
-         "earth_fraction": ("fraction of the time with the Earth in sight", "viridis", 0.0, 1.0),
-         "station_fraction": ("fraction of the time with a station in sight", "viridis", 0.0, 1.0),
-         "permanent_shadow": ("permanent shadow", "gray_r", 0.0, 1.0)}
+LOOKS = {"lit_fraction": Look("lit fraction of the time", "inferno", 0.0, 1.0),
+         "longest_night": Look("longest night [h]", "magma_r", 0.0, unit=3600.0),
+         "earth_fraction": Look("fraction of the time with the Earth in sight", "viridis", 0.0, 1.0),
+         "station_fraction": Look("fraction of the time with a station in sight", "viridis", 0.0, 1.0),
+         "permanent_shadow": Look("permanent shadow", "gray_r", 0.0, 1.0, names=("no", "yes"))}
+HEIGHT, AZIMUTHS = 0.0, 360  # of horizons
 
 
 def add_arguments(parser):
     add_ground(parser, "the map: .tif (GeoTIFF), .png (the first quantity), .csv (a row a cell) or .json (a summary)")
     parser.add_argument("--horizons", metavar="FILE",
                         help="the horizon map of `dspace horizon --map` of this terrain (default: one is computed and removed)")
-    parser.add_argument("--height", type=float, default=0.0, metavar="H",
-                        help="without --horizons: above the ground [m], 0 to 1e6 (default: 0)")
+    parser.add_argument("--height", type=float, metavar="H",
+                        help=f"without --horizons: above the ground [m], 0 to 1e6 (default: {HEIGHT:g})")
     parser.add_argument("--fast", action="store_true",
                         help="horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
-    parser.add_argument("--azimuths", type=int, default=360, metavar="N",
-                        help="without --horizons: of the horizons, 1 to 3600 (default: 360)")
+    parser.add_argument("--azimuths", type=int, metavar="N",
+                        help=f"without --horizons: of the horizons, 1 to 3600 (default: {AZIMUTHS})")
     parser.add_argument("--from", dest="start", required=True, metavar="UTC",
                         help="the first time: UTC in ISO 8601, or with ' TDB', ' TT' or ' TAI' behind it")
     parser.add_argument("--to", dest="end", required=True, metavar="UTC", help="the end, which is no step itself")
@@ -60,8 +62,10 @@ def run(options):
         raise Failed(f"--step {options.step}: accepted: more than 0 s")
     if options.horizons is not None and (options.extent is not None or options.cell_size):
         raise Failed("--extent, --cell-size: accepted: without --horizons, whose cells count")
-    if options.horizons is not None and options.fast:
-        raise Failed("--fast: accepted: without --horizons, which are made already")
+    if options.horizons is not None and (options.fast or options.height is not None or options.azimuths is not None):
+        raise Failed("--fast, --height, --azimuths: accepted: without --horizons, which are made already")
+    options.height = HEIGHT if options.height is None else options.height
+    options.azimuths = AZIMUTHS if options.azimuths is None else options.azimuths
     if out.suffix.lower() != ".tif":
         require_gdal()
     quantities = tuple(options.quantity or ("lit_fraction",))
@@ -79,6 +83,7 @@ def run(options):
         ground = MeasuredGround(stack.enter_context(opened(options)), options)
         horizons = options.horizons
         if horizons is None:
+            check_before(ground, options)
             folder = stack.enter_context(tempfile.TemporaryDirectory(prefix="dspace-horizons-"))
             horizons = ground.scene.horizon_map(ground.terrain, pathlib.Path(folder) / "horizons.tif", height=options.height,
                                                 azimuths=options.azimuths, fast=options.fast, extent=extent_of(options),
@@ -99,6 +104,16 @@ def run(options):
     print(told(out, made))
 
 
+def check_before(ground, options):
+    """Says before the work on horizons what the light over them would be rejected for."""
+    start, end = (float(time) for time in ground.scene.tdb([options.start, options.end]))
+    if not start < end:
+        raise Failed(f"--from {options.start}, --to {options.end}: the span from the start to the end is {end - start:g} s; accepted: more than 0")
+    if not ground.crs:
+        raise Failed(f"--terrain '{options.terrain}': it has no longitudes and latitudes, so the Sun's direction is not known; accepted: a "
+                     "raster with a CRS, or --crs")
+
+
 def run_ensemble(options, out, quantities):
     variogram = variogram_of(options.variogram)
     if options.recording is not None:
@@ -109,6 +124,7 @@ def run_ensemble(options, out, quantities):
     whole = out if out.suffix.lower() == ".tif" else out.with_name(out.name + ".tif")
     with contextlib.ExitStack() as stack:
         ground = MeasuredGround(stack.enter_context(opened(options)), options)
+        check_before(ground, options)
         ground.terrain.remove()
         made = ground.scene.illumination_ensemble(
             options.terrain, whole, variogram, members=options.ensemble, seed=options.seed,
@@ -118,8 +134,10 @@ def run_ensemble(options, out, quantities):
         found = {**source_of(options, ground), "from": options.start, "to": options.end,
                  "step_s": options.step, "members": options.ensemble, "seed": options.seed, "variogram": repr(variogram),
                  "columns": made.columns, "rows": made.rows}
-        label, *look = LOOKS[quantities[0]]
-        write_map(out, made, found, f"{options.start} to {options.end}, {options.ensemble} terrains", (f"mean {label}", *look))
+        look = LOOKS[quantities[0]]
+        # A mean of yes and no is a fraction.
+        mean = dataclasses.replace(look, label=f"mean {look.label}", names=())
+        write_map(out, made, found, f"{options.start} to {options.end}, {options.ensemble} terrains", mean)
         if whole != out:
             whole.unlink()
     if options.json:

@@ -229,7 +229,7 @@ def draw_sun(figure, horizon, row):
     above.plot(row["sun_azimuth_deg"] % 360.0, elevation, "+", color="#d98200", markersize=14, zorder=3, label="Sun")
     above.legend(fontsize=8, loc="upper right")
     bottom, top = above.get_ylim()
-    above.set_ylim(min(bottom, elevation - radius - 1.0), max(top, elevation + radius + 1.0))
+    above.set_ylim(min(bottom, elevation - radius - 1.0), max(top, elevation + radius + max(1.0, 0.06 * (elevation - bottom))))
 
 
 def draw_areas(figure, names, rows):

@@ -193,7 +193,7 @@ def rows_of(ground, starts, ends, lines, recorded):
                "range_m": lines.range[i],
                "clearance_m": lines.clearance[i], "clearance_deg": lines.clearance_deg[i],
                "obstacle_distance_m": lines.distance[i], names[0]: where[i, 0], names[1]: where[i, 1],
-               "obstacle_height_m": where[i, 2]}
+               "obstacle_height_m": where[i, 2], "no_ground_fraction": no_ground(ground, start, end)}
         if recorded:
             row["obstacle"] = lines.object[i].name if lines.object[i] is not None else lines.terrain[i] or None
         if lines.fresnel_free is not None:
@@ -205,6 +205,14 @@ def rows_of(ground, starts, ends, lines, recorded):
                 row["difference"] = lines.difference[i]
         rows.append(row)
     return rows
+
+
+def no_ground(ground, start, end):
+    """The part of a line, 0 to 1, below which the terrain has no data: nothing there hides anything. None without terrain."""
+    if ground.terrain is None:
+        return None
+    _, heights = profile(ground, np.array([point_of(ground, place) for place in (start, end)]))
+    return float(np.mean(np.isnan(heights)))
 
 
 def end_row(ground, end, place, recorded):
@@ -232,6 +240,8 @@ def told(row):
     text += f"; range {row['range_m']:.3f} m"
     if np.isfinite(row["clearance_m"]):  # pictures know none
         text += f", clearance {row['clearance_m']:.3f} m, {row['clearance_deg']:.5f} deg"
+    if row["no_ground_fraction"]:
+        text += f"; {100.0 * row['no_ground_fraction']:.1f} % of it has no ground below it, where nothing can hide it"
     if "fresnel_free" in row:
         text += f", {row['fresnel_free']:.3f} of the first Fresnel zone"
     if "image_clear" in row:
@@ -260,8 +270,11 @@ def draw(figure, ground, points, lines, rows, wavelength):
         clear = bool(lines.clear[i])
         axes.plot(distance[[0, -1]] / unit, [0, 0], color="#2c7a3f" if clear else "#b3261e", linewidth=1.5)
         if wavelength:
-            shown.append(-np.sqrt(wavelength * distance * (distance[-1] - distance) / distance[-1]))
-            axes.plot(distance / unit, shown[1], color="#2c56c8", linewidth=0.8, linestyle="--")
+            zone = np.sqrt(wavelength * distance * (distance[-1] - distance) / distance[-1])
+            shown += [-zone, zone]
+            for edge, label in ((zone, "first Fresnel zone"), (-zone, None)):
+                axes.plot(distance / unit, edge, color="#2c56c8", linewidth=0.8, linestyle="--", label=label)
+            axes.legend(fontsize=7)
         low, high = np.nanmin(shown), max(np.nanmax(shown), 0.0)
         foot = low - 0.05 * max(high - low, 1e-3)
         axes.fill_between(distance / unit, -height, foot, color="#b9b1a6", linewidth=0)

@@ -7,6 +7,7 @@ import shutil
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, lazy
@@ -17,6 +18,19 @@ np = lazy("numpy")
 
 ENDINGS = (".tif", ".png", ".json", ".csv")
 MOST_CELLS = 1_000_000  # of a CSV file
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a quantity is drawn: what the colour bar says, the colour map, its ends (None: those of the values), and in how many of the
+    file's units one of the picture's is. names: of the values 0, 1, ... of a quantity that has no others; whole: it counts."""
+    label: str
+    colours: str
+    low: float | None = None
+    high: float | None = None
+    unit: float = 1.0
+    names: tuple = ()
+    whole: bool = False
 
 
 def add_map(parser):
@@ -90,8 +104,8 @@ def written_to(out):
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def write_map(out, made, found, title, look):
-    """Writes a MapFile as PNG, JSON or CSV by the ending of `out`. look: of the first band: (label, colour map, low, high)."""
+def write_map(out, made, found, title, look, sites=None):
+    """Writes a MapFile as PNG, JSON or CSV by the ending of `out`. look: of the first band. sites: map x, y (n, 2) of places to mark."""
     ending = out.suffix.lower()
     if ending == ".tif":
         return
@@ -109,7 +123,7 @@ def write_map(out, made, found, title, look):
     elif ending == ".csv":
         atomic_write(out, table_of(out, made))
     else:
-        atomic_write(out, picture_of(made, title, look))
+        atomic_write(out, picture_of(made, title, look, sites))
 
 
 def table_of(out, made):
@@ -125,24 +139,37 @@ def table_of(out, made):
     return ("\n".join(lines) + "\n").encode()
 
 
-def picture_of(made, title, look):
+def picture_of(made, title, look, sites=None):
     """The first band as a PNG over map coordinates."""
-    label, colours, low, high = look
-    values = made.read(0)
+    from matplotlib import colormaps
+    from matplotlib.ticker import MaxNLocator
+    values = made.read(0) / look.unit
     extent, aspect, names = frame_of(made)
     ratio = aspect * (extent[3] - extent[2]) / (extent[1] - extent[0])
     wide = np.clip(14.0 / ratio, 5.0, 8.0)
     tall = np.clip(wide * ratio, 3.0, 14.0) + 0.8
     figure = figures()(figsize=(wide, tall), dpi=110, layout="constrained")
     axes = figure.subplots()
+    low, high, colours = look.low, look.high, look.colours
+    if look.names:
+        low, high, colours = -0.5, len(look.names) - 0.5, colormaps[colours].resampled(len(look.names))
+    elif look.whole:
+        high = max(float(np.nanmax(values, initial=0.0)), 1.0)
     image = axes.imshow(np.ma.masked_invalid(values), extent=extent, cmap=colours, vmin=low, vmax=high, interpolation="nearest",
                         aspect=aspect)
+    if sites is not None:
+        axes.plot(*np.asarray(sites).T, "*", markersize=13, markerfacecolor="#ff3020", markeredgecolor="white", linestyle="none")
+        axes.set(xlim=extent[:2], ylim=extent[2:])
     axes.set_facecolor("#d0d0d0")
     axes.ticklabel_format(useOffset=False)
     axes.locator_params(axis="x", nbins=6)
     axes.set(xlabel=names[0], ylabel=names[1])
     axes.set_title(title, fontsize=10)
-    figure.colorbar(image, ax=axes, label=label, shrink=0.8)
+    # As tall as the map.
+    bar = figure.colorbar(image, ax=axes, label=look.label, fraction=0.046 * max(ratio, 0.4), aspect=20.0, pad=0.03,
+                          ticks=range(len(look.names)) if look.names else MaxNLocator(integer=True) if look.whole else None)
+    if look.names:
+        bar.ax.set_yticklabels(look.names)
     data = io.BytesIO()
     figure.savefig(data, format="png", metadata={"Software": None})
     return data.getvalue()

@@ -1,9 +1,11 @@
 """`dspace sites`: the best-lit sites around a point, for masts of given heights."""
 import contextlib
+import json
 import pathlib
 import sys
 import tempfile
 
+from dspace._core.files import atomic_write
 from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import (MeasuredGround, add_ground, opened, out_of, place_of, source_of, text_of, unit_of,
                                                  write)
@@ -35,7 +37,8 @@ def add_arguments(parser):
                         help="what makes a site better (default: lit_fraction)")
     parser.add_argument("--body", metavar="BODY", help="that the terrain lies on (default: the one that its CRS names)")
     parser.add_argument("--maps", metavar="DIR", help="keep the horizon and illumination maps in this folder; the same command continues "
-                        "maps that were interrupted, and uses those that are there (default: they are removed)")
+                        "maps that were interrupted, and uses those that are there; other options of the horizons are rejected; the folder must "
+                        "exist (default: the maps are removed)")
     parser.add_argument("--threads", type=int, default=0, metavar="N", help="of the work, 0 to 256 (default: all)")
     parser.add_argument("--quiet", action="store_true", help="print no progress")
     parser.set_defaults(run=run)
@@ -82,11 +85,11 @@ def maps_of(ground, folder, mast, extent, options):
     """The illumination map of a mast: one that is in the folder, or a new one."""
     import dspace
     horizon_file, lit_file = (folder / f"{name}_{mast:g}m.tif" for name in ("horizons", "lit"))
+    require_same(folder / "options.json", {"--fast": options.fast, "--azimuths": options.azimuths, "--cell-size": options.cell_size,
+                                           "the extent of --site and --radius": [float(value) for value in extent]})
     work = {"threads": options.threads, "progress": None if options.quiet else Progress()}
     if horizon_file.exists():
         horizons = dspace.MapFile.open(horizon_file)
-        if (horizons.metadata.get("DSPACE_FAST") == "yes") != options.fast:
-            raise Failed(f"{horizon_file}: it was made {'without' if options.fast else 'with'} --fast; accepted: the same, or another folder")
     else:
         horizons = ground.scene.horizon_map(ground.terrain, horizon_file, height=mast, azimuths=options.azimuths, fast=options.fast, extent=extent,
                                             cell_size=options.cell_size, **work)
@@ -94,6 +97,21 @@ def maps_of(ground, folder, mast, extent, options):
     return ground.scene.illumination_map(horizons, lit_file, start=options.start, end=options.end, step=options.step,
                                          quantities=("lit_fraction", "longest_night"), terrain=ground.terrain, body=options.body,
                                          replace=True, **work)
+
+
+def require_same(path, options):
+    """Keeps the options of the horizons beside the maps. Rejects others than those that are there; the ground is in the maps."""
+    if not path.exists():
+        atomic_write(path, json.dumps(options, indent=2).encode())
+        return
+    try:
+        before = json.loads(path.read_text())
+    except ValueError:
+        raise Failed(f"{path}: it is damaged; accepted: another folder") from None
+    for name, value in options.items():
+        if before.get(name) != value:
+            raise Failed(f"--maps '{path.parent}': {name} is {value}, and its maps were made with {before.get(name)}; accepted: the same, "
+                         "or another folder")
 
 
 def rows_of(ground, sites):
@@ -120,15 +138,15 @@ def draw(figure, maps, sites, masts):
         axes = figure.add_subplot(1, len(masts), k + 1)
         edges, aspect, names = frame_of(made)
         unit = 1.0
-        if not made.in_degrees:
+        if made.unit == "m":
             unit, name = unit_of(np.abs(edges))
-            names = [f"{axis} [{name}]" for axis in names]
+            names = [axis.replace("[m]", f"[{name}]") for axis in names]
         shown = axes.imshow(100.0 * np.ma.masked_invalid(made.read("lit_fraction")), extent=edges / unit, cmap="inferno",
                             vmin=100.0 * low, vmax=100.0 * high, aspect=aspect)
         for site in (site for site in sites if site.mast == mast):
-            axes.plot(site.x / unit, site.y / unit, "o", markersize=7, markerfacecolor="none", markeredgecolor="#30d0ff")
+            axes.plot(site.x / unit, site.y / unit, "o", markersize=7, markerfacecolor="#30d0ff", markeredgecolor="black")
             axes.annotate(str(site.rank), (site.x / unit, site.y / unit), textcoords="offset points", xytext=(5, 5),
-                          color="#30d0ff", fontsize=9)
+                          color="black", fontsize=9, bbox={"boxstyle": "round,pad=0.15", "facecolor": "white", "alpha": 0.8, "linewidth": 0})
         axes.ticklabel_format(useOffset=False)
         axes.set(xlabel=names[0], ylabel=names[1], title=f"mast of {mast:g} m")
     figure.colorbar(shown, ax=figure.axes, label="lit [% of the time]", shrink=0.8)

@@ -40,7 +40,7 @@ class Span:
             raise Failed(f"--time {options.time!r}: accepted: T0,T1[,STEP]")
         self.start, self.end = (float(time) for time in scene.tdb(parts[:2]))
         if not self.start < self.end:
-            raise Failed(f"--time {options.time!r}: the end is not after the start; accepted: T0,T1[,STEP]")
+            raise Failed(f"--time {options.time!r}: the end is not after the start; accepted: T0,T1[,STEP], T0 before T1")
         try:
             self.step = float(parts[2]) if len(parts) == 3 else step
         except ValueError:

@@ -1,13 +1,15 @@
 """`dspace viewshed`: the ground that is seen from sites on terrain."""
 import sys
 
-from dspace.command_line import Failed
+from dspace.command_line import Failed, lazy
 from dspace.command_line.measure_ground import MeasuredGround, add_ground, opened, place_of, source_of, text_of
-from dspace.command_line.measure_map import (add_map, common, extent_of, map_out, require_gdal, told, write_map,
+from dspace.command_line.measure_map import (Look, add_map, common, extent_of, map_out, require_gdal, told, write_map,
                                              written_to)
 
-LOOKS = {"visible": ("seen", "viridis", 0.0, 1.0), "least_height": ("least height that is seen [m]", "magma_r", 0.0, None),
-         "count": ("sites that see it", "viridis", 0.0, None)}
+np = lazy("numpy")
+
+LOOKS = {"visible": Look("seen", "viridis", names=("no", "yes")), "least_height": Look("least height that is seen [m]", "magma_r", 0.0),
+         "count": Look("sites that see it", "viridis", 0.0, whole=True)}
 
 
 def add_arguments(parser):
@@ -49,9 +51,11 @@ def run(options):
             found = {**source_of(options, ground), "sites": _places(ground, places, options),
                      "target_height_m": options.target_height, "radius_m": options.radius, "columns": made.columns,
                      "rows": made.rows, "cell_size": made.cell_size}
-            where = ", ".join([*(f"{place[0]:g}, {place[1]:g}" for place in places), *options.frame][:3])
+            where = " and ".join([*(f"{place[0]:g}, {place[1]:g}" for place in places), *options.frame][:3])
+            where += f" and {len(sites.x) - 3} more" if len(sites.x) > 3 else ""
             high = f", {options.height:g} m above the ground" if places else ""
-            write_map(out, made, found, f"Seen from {where}{high}", LOOKS[quantities[0]])
+            write_map(out, made, found, f"Seen from {where}{high}", LOOKS[quantities[0]],
+                      np.column_stack((sites.x, sites.y)))
     if options.json:
         sys.stdout.write(text_of(found))
         return
