@@ -315,3 +315,18 @@ for word in WORDS:
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_page_has_names_and_units(capsys, wall, tmp_path):
+    needs_module("jinja2", "python3-jinja2")
+    needs_module("matplotlib", "python3-matplotlib")
+    from dspace.command_line.measure_page import columns_of
+    assert columns_of([{"from_lon_deg": 2.8e-8, "range_m": 2.13726417e11, "clear": True, "frame": None, "peak_utc": "2026-01-01"},
+                       {"from_lon_deg": -1e-9, "range_m": np.float64(1.0), "clear": False, "frame": None, "peak_utc": "2026-01-02"}]) == [
+        ("from lon [deg]", [0.0, 0.0]), ("range [km]", [213726417.0, 0.001]), ("clear", [True, False]),
+        ("peak [UTC]", ["2026-01-01", "2026-01-02"])]
+    out = tmp_path / "los.html"
+    code, _, err = run(capsys, "los", "--terrain", wall, "--from", "50.5,20.5,2", "--to", "150.5,20.5,2", "--out", out)
+    page = out.read_text()
+    assert code == 0 and "<th>obstacle distance [m]</th>" in page and "<td>49.1</td>" in page, err
+    assert "on body</td>" in page and "_m<" not in page and "wall.tif (" in page  # the file with its size

@@ -4,11 +4,11 @@ import io
 import json
 import math
 import pathlib
-import shlex
 import sys
 
 from dspace._core.files import atomic_write
 from dspace.command_line import Failed, lazy
+from dspace.command_line.measure_page import write_page
 from dspace.command_line.recorded import add_recording, recorded_scene
 from dspace.command_line.terrain import add_raster_options
 from dspace.command_line.terrain_rasters import add, degrees, gdal_modules, given
@@ -252,26 +252,11 @@ def write(out, found, rows, draw):
         figure = figures()(figsize=(9.0, 4.5), dpi=100, layout="constrained")
         draw(figure)
     if ending == ".html":
-        report(out, found, rows, figure)
+        write_page(out, found, rows, figure)
         return
     data = io.BytesIO()
     figure.savefig(data, format="png", metadata={"Software": None})
     atomic_write(out, data.getvalue())
-
-
-def report(out, found, rows, figure):
-    import dspace
-    page = dspace.Report(f"dspace {sys.argv[1] if len(sys.argv) > 1 else 'measurement'}")
-    section = page.section("Result")
-    section.values({name: value for name, value in found.items() if not isinstance(value, (list, dict))})
-    if figure is not None:
-        section.figure(figure)
-    section.table([{name: plain(value) for name, value in row.items()} for row in rows])
-    given = {"command": shlex.join(["dspace", *sys.argv[1:]])}
-    if found.get("terrain") and pathlib.Path(found["terrain"]).is_file():
-        given["terrain"] = pathlib.Path(found["terrain"])
-    page.inputs(**given)
-    page.write(out)
 
 
 def _cell(value):
