@@ -146,7 +146,7 @@ TEST(HorizonKernel, GroupsMayBeRaised) {
   EXPECT_EQ(raised(5.0f, 0.0f), 0b1111u);
   tangents.assign(HorizonLanes, -0.15f);
   EXPECT_EQ(raised(5.0f, 0.0f), 0u);
-  EXPECT_EQ(LeastOf(tangents), -0.15f);
+  EXPECT_EQ(LeastOf(tangents.data(), HorizonLanes), -0.15f);
   tangents[40] = -2.0f;
-  EXPECT_EQ(LeastOf(tangents), -2.0f);
+  EXPECT_EQ(LeastOf(tangents.data(), HorizonLanes), -2.0f);
 }

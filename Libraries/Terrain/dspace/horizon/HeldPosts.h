@@ -19,7 +19,7 @@ class HeldPosts {
 public:
   // Places that this many rows or more outside the lattice are in no line of sight; as many more
   // are held above and below, for rows that are swept together with others' steps.
-  static constexpr int RowsToSpare = 36;
+  static constexpr int RowsToSpare = HorizonRows + 4;
 
   // The number of heights that it would hold.
   static std::int64_t CountOf(const PostLattice& lattice);

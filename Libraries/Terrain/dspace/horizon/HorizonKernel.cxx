@@ -199,17 +199,18 @@ unsigned MayRaise(const GroupCrests& crests, const LaneReach& reach, float slack
 }
 
 DSPACE_FOR_PROCESSORS
-float LeastOf(const std::vector<float>& values) {
+float LeastOf(const float* values, int count) {
+  const auto size = std::size_t(count);
   constexpr std::size_t Width = 16;
   std::array<float, Width> least;
   least.fill(std::numeric_limits<float>::infinity());
-  const std::size_t whole = values.size() / Width * Width;
+  const std::size_t whole = size / Width * Width;
   for (std::size_t i = 0; i < whole; i += Width) {
     for (std::size_t k = 0; k < Width; ++k) {
       least[k] = values[i + k] < least[k] ? values[i + k] : least[k];
     }
   }
-  for (std::size_t i = whole; i < values.size(); ++i) {
+  for (std::size_t i = whole; i < size; ++i) {
     least[0] = values[i] < least[0] ? values[i] : least[0];
   }
   return *std::min_element(least.begin(), least.end());

@@ -10,7 +10,8 @@ namespace dspace {
 
 // Posts of a row that are swept together.
 inline constexpr int HorizonLanes = 64;
-// Of them, posts that are skipped together.
+inline constexpr int HorizonRows = 64; // of posts, the most that share a path
+// Of a row, posts that are skipped together.
 inline constexpr int HorizonGroup = 16;
 // Of floats: more than that of a product, a sum and a quotient.
 inline constexpr float HorizonRounding = 1e-6f;
@@ -63,7 +64,7 @@ using GroupCrests = std::array<float, HorizonLanes / HorizonGroup>; // [m]
 // that is up to the group's crest high.
 unsigned MayRaise(const GroupCrests& crests, const LaneReach& reach, float slack, const float* z,
                   const float* tangents);
-float LeastOf(const std::vector<float>& values);
+float LeastOf(const float* values, int count);
 // Elevations [deg] of tangents; `none` of those that are `noTangent`, NaN of NaN. To 2e-5 degrees.
 void ElevationsOf(const float* tangents, int count, float noTangent, float none, float* elevations);
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -18,7 +19,8 @@ namespace dspace {
 namespace {
 
 constexpr int Band = 32;              // posts of distance that share what is read
-constexpr double FarBand = 0.25;      // of the distance, where posts are held and paths straight
+constexpr double FarBand = 0.5;       // of the distance, where posts are held and paths straight
+constexpr double FarRun = 128.0;      // posts away, from where on runs are longer
 constexpr double RunPosts = 8.0;      // of edges whose heights are bounded together
 constexpr double PerPost = 2.0;       // places of a coarser level in a post
 constexpr double Widest = 2048;       // columns that are read at once
@@ -94,14 +96,15 @@ public:
     const double near = options.near * this->MetresOf(this->Block_.level);
     std::vector<float> close; // what is found in the near zone, once it is over
     int level = this->Block_.level;
-    for (double s = 0.0; s < end;) {
+    const double held = distant ? 0.0 : this->MarchHeldRows(near, end);
+    for (double s = held; s < end;) {
       while (level < this->Lattice_.levels - 1 &&
              s >= (options.posts - 1e-6) * this->MetresOf(level)) {
         ++level;
       }
-      const double band = s + this->BandFrom(s, level);
-      const double to = s < near ? std::min(band, near) : band;
-      const bool hidden = s > 0.0 && this->NothingHigherFrom(s);
+      const double to = this->BandEnd(s, near, level);
+      const bool hidden = s > 0.0 && this->NothingHigherFrom(s, this->Tangents_.data(),
+                                                             int(this->Tangents_.size()));
       if (s >= near && hidden) {
         break;
       }
@@ -129,10 +132,12 @@ public:
 private:
   using Clock = std::chrono::steady_clock;
 
-  // [m] of distance that share what is read.
-  double BandFrom(double s, int level) const {
+  // [m] Ground from s to there shares what is read.
+  double BandEnd(double s, double near, int level) const {
     const double band = Band * this->MetresOf(level);
-    return this->Placement_.OnBody() || !this->Sweep_.Held() ? band : std::max(band, FarBand * s);
+    const bool even = this->Placement_.OnBody() || !this->Sweep_.Held();
+    const double to = s + (even ? band : std::max(band, FarBand * s));
+    return s < near ? std::min(to, near) : to;
   }
 
   double MetresOf(int level) const { return std::ldexp(this->Cell_, level); }
@@ -222,9 +227,9 @@ private:
            2.0 * this->MetresOf(this->Block_.level);
   }
 
-  // Whether the terrain's greatest height could not raise any post's horizon from there on.
-  bool NothingHigherFrom(double s) const {
-    const float low = LeastOf(this->Tangents_);
+  // Whether the terrain's greatest height could not raise any of `count` tangents from there on.
+  bool NothingHigherFrom(double s, const float* tangents, int count) const {
+    const float low = LeastOf(tangents, count);
     if (low == HorizonSweep::None) {
       return false;
     }
@@ -355,18 +360,28 @@ private:
     return true;
   }
 
+  bool IsOutside(const PostBlock& box) const {
+    return box.row >= this->Lattice_.RowsAt(box.level) || box.row + box.height <= 0 ||
+           (!this->Lattice_.periodic &&
+            (box.column >= this->Lattice_.ColumnsAt(box.level) || box.column + box.width <= 0));
+  }
+
+  // The posts that are held, if they are those of the block.
+  const HeldPosts* Held() const {
+    const HeldPosts* held = this->Sweep_.Held();
+    return this->Block_.level == 0 && held && held->Every() == this->Every_ ? held : nullptr;
+  }
+
   // Its posts; false where it is outside the lattice.
   bool ReadBox(SweptPosts& ground) {
     const int level = ground.place.level;
     const std::int64_t columns = this->Lattice_.ColumnsAt(level);
     const std::int64_t rows = this->Lattice_.RowsAt(level);
-    if (ground.place.row >= rows || ground.place.row + ground.place.height <= 0 ||
-        (!this->Lattice_.periodic &&
-         (ground.place.column >= columns || ground.place.column + ground.place.width <= 0))) {
+    if (this->IsOutside(ground.place)) {
       return false;
     }
-    const HeldPosts* held = this->Sweep_.Held();
-    if (level == 0 && held && held->Every() == this->Every_) {
+    const HeldPosts* held = this->Held();
+    if (level == 0 && held) {
       ground.span = held->SpanOf(ground.place);
       ground.held = held;
       ground.place = held->Place();
@@ -529,32 +544,146 @@ private:
         this->Report_.steps += cells.size() * HorizonLanes;
         continue;
       }
-      const std::int64_t row = this->Block_.row + std::int64_t(j) * this->Every_;
-      const bool regular = this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
-                           this->Starts_[std::size_t(j)].y() == double(row) * this->Spacing_;
-      if (!regular) {
+      if (!this->IsRegular(j)) {
         this->MarchParts(j, ground, knots, groups);
         continue;
       }
       if (!runsRow) {
-        this->FindRuns(ground, knots);
-        runsRow = row;
+        this->FindRuns(ground, knots, this->Runs_);
+        runsRow = this->RowOf(j);
       }
-      this->MarchRuns(j, ground, row - *runsRow, s0 > 0.0, groups);
+      this->MarchRuns(j, ground, this->Runs_, this->RowOf(j) - *runsRow, s0 > 0.0, groups);
     }
     return true;
   }
 
-  // [m] of a path whose edges are bounded together.
-  double RunFrom(double s) const {
-    const double sparse = this->Sweep_.Options().fast
-                              ? std::max(1.0, s / (0.5 * HorizonOptions::FastExact * this->Metres_))
-                              : 1.0;
-    return RunPosts * sparse * this->Metres_;
+  std::int64_t RowOf(int j) const { return this->Block_.row + std::int64_t(j) * this->Every_; }
+  // Whether the path of a row is that of the others, shifted by posts.
+  bool IsRegular(int j) const {
+    return this->Placement_.GetKind() == PostPlacement::Kind::Plane &&
+           this->Starts_[std::size_t(j)].y() == double(this->RowOf(j)) * this->Spacing_;
   }
 
-  // Finds the edges of a path of its own only where they may count.
-  void MarchParts(int j, const SweptPosts& ground, const std::vector<Knot>& knots, Groups groups) {
+  // A band of distance over posts that are held.
+  struct HeldBand {
+    double s0;
+    double s1;
+    bool outside;
+    EdgeRuns runs;                   // of regular rows
+    std::optional<std::int64_t> row; // that they are of
+  };
+  // Where a group of a row was raised last: the ground that it sees, or nearly so.
+  struct Sight {
+    HeldBand* band = nullptr;
+    std::size_t run = 0; // of regular rows
+    double s = 0.0;      // of others
+    bool operator==(const Sight& other) const {
+      return this->band == other.band && this->run == other.run && this->s == other.s;
+    }
+  };
+  // The latest first: lanes along a path see the same crest at other distances.
+  static constexpr int SightCount = 3;
+  using Sights = std::array<std::array<Sight, GroupCount>, SightCount>;
+
+  // Marches over posts of level 0 that are held, a row after the other. Each begins with what the
+  // row before saw: most of the rest cannot raise its horizon then. Returns the distance [m] up to
+  // which that is done; 0 where it cannot be.
+  double MarchHeldRows(double near, double end) {
+    if (!this->Held()) {
+      return 0.0;
+    }
+    std::vector<HeldBand> bands;
+    const double last = (this->Sweep_.Options().posts - 1e-6) * this->Metres_;
+    double done = 0.0;
+    while (done < end && done < last) {
+      const double to = this->BandEnd(done, near, 0);
+      PostBlock box;
+      if (!this->FindBox(0, done, std::min(to, end), box)) {
+        return 0.0;
+      }
+      bands.push_back({done, std::min(to, end), this->IsOutside(box), {}, {}});
+      done = to;
+      if (bands.back().outside && !this->Placement_.OnBody() && bands.back().s0 > 0.0) {
+        done = end; // what is outside stays outside
+      }
+    }
+    SweptPosts ground;
+    ground.held = this->Held();
+    ground.place = ground.held->Place();
+    Sights before;
+    for (int j = 0; j < this->Block_.height; ++j) {
+      Sights now;
+      this->Seen_ = &now;
+      this->MarchSights(j, ground, before);
+      this->MarchBands(j, ground, bands);
+      before = now;
+    }
+    this->Seen_ = nullptr;
+    return done;
+  }
+
+  void MarchBands(int j, const SweptPosts& ground, std::vector<HeldBand>& bands) {
+    const float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
+    for (HeldBand& band : bands) {
+      if (band.outside) {
+        continue;
+      }
+      if (band.s0 > 0.0 && this->NothingHigherFrom(band.s0, tangents, HorizonLanes)) {
+        return;
+      }
+      this->Band_ = &band;
+      this->Follow(j, 0, band.s0, band.s1, this->Knots_);
+      const Groups groups =
+          band.s0 > 0.0 ? this->MayRaiseBetween(j, ground, this->Knots_) : this->AllGroups();
+      if (!groups) {
+        this->Report_.skipped +=
+            std::uint64_t(HorizonLanes * PerPost * (band.s1 - band.s0) / this->Metres_);
+      } else if (this->IsRegular(j)) {
+        if (!band.row) {
+          this->FindRuns(ground, this->Knots_, band.runs);
+          band.row = this->RowOf(j);
+        }
+        this->MarchRuns(j, ground, band.runs, this->RowOf(j) - *band.row, band.s0 > 0.0, groups);
+      } else {
+        this->MarchParts(j, ground, this->Knots_, groups);
+      }
+    }
+  }
+
+  void MarchSights(int j, const SweptPosts& ground, const Sights& sights) {
+    for (const std::array<Sight, GroupCount>& each : sights) {
+      Groups left = this->AllGroups();
+      for (int g = 0; g < GroupCount; ++g) {
+        const Sight& sight = each[std::size_t(g)];
+        Groups same = 0;
+        for (int k = g; k < GroupCount; ++k) {
+          same |= each[std::size_t(k)] == sight ? left & 1u << k : 0u;
+        }
+        left &= ~same;
+        if (!sight.band || !same) {
+          continue;
+        }
+        this->Band_ = sight.band;
+        if (this->IsRegular(j)) {
+          this->MarchRun(j, ground, sight.band->runs, sight.run, this->RowOf(j) - *sight.band->row,
+                         same);
+        } else {
+          this->Follow(j, 0, sight.band->s0, sight.band->s1, this->Knots_);
+          this->MarchParts(j, ground, this->Knots_, same, sight.s);
+        }
+      }
+    }
+  }
+
+  // [m] of a path whose edges are bounded together.
+  double RunFrom(double s) const {
+    const double sparse = this->Sweep_.Options().fast ? 0.5 * HorizonOptions::FastExact : FarRun;
+    return RunPosts * std::max(this->Metres_, s / sparse);
+  }
+
+  // Finds the edges of a path of its own only where they may count; or those about `at` [m] alone.
+  void MarchParts(int j, const SweptPosts& ground, const std::vector<Knot>& knots, Groups groups,
+                  std::optional<double> at = std::nullopt) {
     for (std::size_t a = 0; a + 1 < knots.size();) {
       const double enough = 0.75 * this->RunFrom(knots[a].s);
       std::size_t b = a + 1;
@@ -563,13 +692,15 @@ private:
       }
       this->Part_.assign(knots.begin() + std::ptrdiff_t(a), knots.begin() + std::ptrdiff_t(b) + 1);
       Groups raised = groups;
-      if (knots[a].s > 0.0 && ground.held) {
+      if (at) {
+        raised = knots[a].s <= *at && *at < knots[b].s ? groups : 0u;
+      } else if (knots[a].s > 0.0 && ground.held) {
         raised &= this->MayRaiseBetween(j, ground, this->Part_);
       }
       if (raised) {
-        this->FindRuns(ground, this->Part_);
-        this->MarchRuns(j, ground, 0, this->Runs_.Runs().size() > 1, raised);
-      } else {
+        this->FindRuns(ground, this->Part_, this->Runs_);
+        this->MarchRuns(j, ground, this->Runs_, 0, this->Runs_.Runs().size() > 1, raised);
+      } else if (!at) {
         this->Report_.skipped +=
             std::uint64_t(HorizonLanes * PerPost * (knots[b].s - knots[a].s) / this->Metres_);
       }
@@ -578,40 +709,73 @@ private:
   }
 
   // The runs, `down` rows below those that they are of. `far`: not all of the first run counts.
-  void MarchRuns(int j, const SweptPosts& ground, std::int64_t down, bool far, Groups groups) {
-    const std::ptrdiff_t shift = ground.At(ground.place.column, ground.place.row + down) -
-                                 ground.At(ground.place.column, ground.place.row);
-    for (const EdgeRuns::Run& run : this->Runs_.Runs()) {
+  void MarchRuns(int j, const SweptPosts& ground, const EdgeRuns& runs, std::int64_t down, bool far,
+                 Groups groups) {
+    for (std::size_t k = 0; k < runs.Runs().size(); ++k) {
+      const EdgeRuns::Run& run = runs.Runs()[k];
+      if (run.edges.empty()) {
+        continue;
+      }
       Groups raised = groups;
-      if (ground.held && (far || &run != &this->Runs_.Runs().front()) && !run.edges.empty()) {
+      if (ground.held && (far || k > 0)) {
         PostExtent posts = run.posts;
         posts.top += down;
         posts.bottom += down;
         raised = this->MayRaiseBy(j, ground, posts, run.ground, run.reach, groups);
       }
-      std::uint64_t count = 0; // of lanes
-      for (int g = 0; g < GroupCount; ++g) {
-        count += (raised >> g & 1u) * HorizonGroup;
-      }
-      this->Report_.steps += run.edges.size() * count;
-      this->Report_.skipped += run.edges.size() * (HorizonLanes - count);
-      const std::size_t at = std::size_t(j) * HorizonLanes;
-      if (this->Sweep_.Options().fast) {
-        MarchEdgesFast(run.edges, raised, this->Bases_[std::size_t(j)], ground.Heights() + shift,
-                       &this->Heights_[at], &this->Tangents_[at]);
+      if (raised) {
+        this->MarchRun(j, ground, runs, k, down, raised);
       } else {
-        MarchEdges(run.edges, raised, ground.Heights() + shift, &this->Heights_[at],
-                   &this->Tangents_[at]);
+        this->Report_.skipped += run.edges.size() * HorizonLanes;
+      }
+    }
+  }
+
+  void See(std::size_t group, const Sight& sight) {
+    Sights& seen = *this->Seen_;
+    for (int k = 0; k < SightCount; ++k) {
+      if (seen[std::size_t(k)][group] == sight) {
+        return;
+      }
+    }
+    for (std::size_t k = SightCount - 1; k > 0; --k) {
+      seen[k][group] = seen[k - 1][group];
+    }
+    seen[0][group] = sight;
+  }
+
+  void MarchRun(int j, const SweptPosts& ground, const EdgeRuns& runs, std::size_t index,
+                std::int64_t down, Groups groups) {
+    const EdgeRuns::Run& run = runs.Runs()[index];
+    const float* heights = ground.Heights() +
+                           ground.At(ground.place.column, ground.place.row + down) -
+                           ground.At(ground.place.column, ground.place.row);
+    const float* z = &this->Heights_[std::size_t(j) * HorizonLanes];
+    float* tangents = &this->Tangents_[std::size_t(j) * HorizonLanes];
+    std::array<float, HorizonLanes> before;
+    std::copy_n(tangents, HorizonLanes, before.begin());
+    if (this->Sweep_.Options().fast) {
+      MarchEdgesFast(run.edges, groups, this->Bases_[std::size_t(j)], heights, z, tangents);
+    } else {
+      MarchEdges(run.edges, groups, heights, z, tangents);
+    }
+    for (int g = 0; g < GroupCount; ++g) {
+      const bool marched = (groups & 1u << g) != 0;
+      (marched ? this->Report_.steps : this->Report_.skipped) += run.edges.size() * HorizonGroup;
+      const std::ptrdiff_t lane = std::ptrdiff_t(g) * HorizonGroup;
+      if (this->Seen_ && marched &&
+          std::memcmp(tangents + lane, before.data() + lane, HorizonGroup * sizeof(float)) != 0) {
+        this->See(std::size_t(g), {this->Band_, index, runs.Middle(index)});
       }
     }
   }
 
   // The edges of the level's triangles that a row crosses between its knots.
-  void FindRuns(const SweptPosts& ground, const std::vector<Knot>& knots) {
+  void FindRuns(const SweptPosts& ground, const std::vector<Knot>& knots, EdgeRuns& runs) const {
     constexpr double Snap = 1e-6; // posts
     const double s0 = knots.front().s;
     const double s1 = knots.back().s;
-    this->Runs_.Clear(std::max(1, int((s1 - s0) / this->RunFrom(s0))), s0, s1);
+    runs.Clear(std::max(1, int((s1 - s0) / this->RunFrom(s0))), s0, s1);
     const double least = 1e-6 * this->MetresOf(this->Block_.level);
     for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
       const Knot& a = knots[k];
@@ -631,10 +795,10 @@ private:
         const std::ptrdiff_t first = ground.At(c, r);
         const std::ptrdiff_t second = ground.At(c + right, r + down);
         if (ground.Has(c, r, (HorizonLanes - 1) * this->Every_)) {
-          this->Runs_.Add(a.s + t * (b.s - a.s),
-                          {StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
-                           share < Snap ? first : second, float(share)},
-                          c, r, right, down);
+          runs.Add(a.s + t * (b.s - a.s),
+                   {StepBetween(a, b, t, this->Bend_), share > 1.0 - Snap ? second : first,
+                    share < Snap ? first : second, float(share)},
+                   c, r, right, down);
         }
       };
       // Near a pole a step along a parallel crosses any number of columns.
@@ -652,7 +816,7 @@ private:
       }
       ForEachCrossing(a.x, a.y, b.x, b.y, add);
     }
-    this->Runs_.Close(this->Span_);
+    runs.Close(this->Span_);
   }
 
   // With HorizonOptions::fast: whether an edge that is crossed at a distance [m] counts. Of distant
@@ -719,7 +883,10 @@ private:
   std::vector<float> Tangents_;
   std::vector<float> Bases_; // the mean height of each row
   EdgeRuns Runs_;
-  std::vector<Knot> Part_;         // of a path
+  std::vector<Knot> Knots_; // of a path
+  std::vector<Knot> Part_;
+  HeldBand* Band_ = nullptr;       // that is marched over
+  Sights* Seen_ = nullptr;         // of the row that is marched, if that is of use
   HeightSpan Span_ = {0.0f, 0.0f}; // that all ground lies between
   float Least_ = Infinite;
   float Greatest_ = -Infinite;

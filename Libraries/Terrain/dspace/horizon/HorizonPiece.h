@@ -8,7 +8,6 @@
 
 namespace dspace {
 
-inline constexpr int HorizonRows = 32;         // the most of a piece
 inline constexpr double HorizonFarthest = 1.5; // [rad] along a body, that horizons are looked for
 
 // HorizonSweep::SweepEvery() for a block of up to HorizonLanes x HorizonRows posts whose rows share

@@ -107,7 +107,8 @@ HorizonReport HorizonSweep::SweepParts(const PostBlock& block, int every, double
   const std::int64_t last = lattice.ColumnsAt(block.level) - 1;
   const bool even =
       lattice.periodic || lattice.ColumnPlace(block.level, last) == last << block.level;
-  const int rows = std::max(1, HorizonRows / every);
+  // Where posts are not held, what a piece reads grows with its rows.
+  const int rows = std::max(1, (this->Held_ ? HorizonRows : HorizonRows / 2) / every);
   for (int r = 0; r < block.height; r += rows) {
     for (int c = 0; c < block.width;) {
       PostBlock part = block;
