@@ -81,10 +81,6 @@ public:
   // To be called once all edges are there; `heights` as of GroundBounds::Reach.
   void Close(const HeightSpan& heights);
   const std::vector<Run>& Runs() const { return this->Runs_; }
-  // [m] The distance of the middle of a run.
-  double Middle(std::size_t run) const {
-    return this->Begin_ + (double(run) + 0.5) / this->PerMetre_;
-  }
 
 private:
   std::vector<Run> Runs_;

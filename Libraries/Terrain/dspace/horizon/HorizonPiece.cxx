@@ -569,27 +569,30 @@ private:
     double s0;
     double s1;
     bool outside;
-    EdgeRuns runs;                   // of regular rows
-    std::optional<std::int64_t> row; // that they are of
+    EdgeRuns runs;
+    std::optional<std::int64_t> row; // that the runs are of
   };
   // Where a group of a row was raised last: the ground that it sees, or nearly so.
   struct Sight {
     HeldBand* band = nullptr;
-    std::size_t run = 0; // of regular rows
-    double s = 0.0;      // of others
+    std::size_t run = 0;
     bool operator==(const Sight& other) const {
-      return this->band == other.band && this->run == other.run && this->s == other.s;
+      return this->band == other.band && this->run == other.run;
     }
   };
   // The latest first: lanes along a path see the same crest at other distances.
   static constexpr int SightCount = 3;
   using Sights = std::array<std::array<Sight, GroupCount>, SightCount>;
 
-  // Marches over posts of level 0 that are held, a row after the other. Each begins with what the
-  // row before saw: most of the rest cannot raise its horizon then. Returns the distance [m] up to
-  // which that is done; 0 where it cannot be.
+  // Marches over posts of level 0 that are held, a regular row after the other. Each begins with
+  // what the row before saw: most of the rest cannot raise its horizon then. Returns the distance
+  // [m] up to which that is done; 0 where it is not: on a body it takes longer than it saves.
   double MarchHeldRows(double near, double end) {
-    if (!this->Held()) {
+    bool regular = this->Held() != nullptr;
+    for (int j = 0; j < this->Block_.height; ++j) {
+      regular = regular && this->IsRegular(j);
+    }
+    if (!regular) {
       return 0.0;
     }
     std::vector<HeldBand> bands;
@@ -603,7 +606,7 @@ private:
       }
       bands.push_back({done, std::min(to, end), this->IsOutside(box), {}, {}});
       done = to;
-      if (bands.back().outside && !this->Placement_.OnBody() && bands.back().s0 > 0.0) {
+      if (bands.back().outside && bands.back().s0 > 0.0) {
         done = end; // what is outside stays outside
       }
     }
@@ -638,15 +641,13 @@ private:
       if (!groups) {
         this->Report_.skipped +=
             std::uint64_t(HorizonLanes * PerPost * (band.s1 - band.s0) / this->Metres_);
-      } else if (this->IsRegular(j)) {
-        if (!band.row) {
-          this->FindRuns(ground, this->Knots_, band.runs);
-          band.row = this->RowOf(j);
-        }
-        this->MarchRuns(j, ground, band.runs, this->RowOf(j) - *band.row, band.s0 > 0.0, groups);
-      } else {
-        this->MarchParts(j, ground, this->Knots_, groups);
+        continue;
       }
+      if (!band.row) {
+        this->FindRuns(ground, this->Knots_, band.runs);
+        band.row = this->RowOf(j);
+      }
+      this->MarchRuns(j, ground, band.runs, this->RowOf(j) - *band.row, band.s0 > 0.0, groups);
     }
   }
 
@@ -660,16 +661,10 @@ private:
           same |= each[std::size_t(k)] == sight ? left & 1u << k : 0u;
         }
         left &= ~same;
-        if (!sight.band || !same) {
-          continue;
-        }
-        this->Band_ = sight.band;
-        if (this->IsRegular(j)) {
+        if (sight.band && same) {
+          this->Band_ = sight.band;
           this->MarchRun(j, ground, sight.band->runs, sight.run, this->RowOf(j) - *sight.band->row,
                          same);
-        } else {
-          this->Follow(j, 0, sight.band->s0, sight.band->s1, this->Knots_);
-          this->MarchParts(j, ground, this->Knots_, same, sight.s);
         }
       }
     }
@@ -681,9 +676,8 @@ private:
     return RunPosts * std::max(this->Metres_, s / sparse);
   }
 
-  // Finds the edges of a path of its own only where they may count; or those about `at` [m] alone.
-  void MarchParts(int j, const SweptPosts& ground, const std::vector<Knot>& knots, Groups groups,
-                  std::optional<double> at = std::nullopt) {
+  // Finds the edges of a path of its own only where they may count.
+  void MarchParts(int j, const SweptPosts& ground, const std::vector<Knot>& knots, Groups groups) {
     for (std::size_t a = 0; a + 1 < knots.size();) {
       const double enough = 0.75 * this->RunFrom(knots[a].s);
       std::size_t b = a + 1;
@@ -692,15 +686,13 @@ private:
       }
       this->Part_.assign(knots.begin() + std::ptrdiff_t(a), knots.begin() + std::ptrdiff_t(b) + 1);
       Groups raised = groups;
-      if (at) {
-        raised = knots[a].s <= *at && *at < knots[b].s ? groups : 0u;
-      } else if (knots[a].s > 0.0 && ground.held) {
+      if (knots[a].s > 0.0 && ground.held) {
         raised &= this->MayRaiseBetween(j, ground, this->Part_);
       }
       if (raised) {
         this->FindRuns(ground, this->Part_, this->Runs_);
         this->MarchRuns(j, ground, this->Runs_, 0, this->Runs_.Runs().size() > 1, raised);
-      } else if (!at) {
+      } else {
         this->Report_.skipped +=
             std::uint64_t(HorizonLanes * PerPost * (knots[b].s - knots[a].s) / this->Metres_);
       }
@@ -765,7 +757,7 @@ private:
       const std::ptrdiff_t lane = std::ptrdiff_t(g) * HorizonGroup;
       if (this->Seen_ && marched &&
           std::memcmp(tangents + lane, before.data() + lane, HorizonGroup * sizeof(float)) != 0) {
-        this->See(std::size_t(g), {this->Band_, index, runs.Middle(index)});
+        this->See(std::size_t(g), {this->Band_, index});
       }
     }
   }
