@@ -62,7 +62,8 @@ def run(options):
         raise Failed(f"--step {options.step}: accepted: more than 0 s")
     if options.horizons is not None and (options.extent is not None or options.cell_size):
         raise Failed("--extent, --cell-size: accepted: without --horizons, whose cells count")
-    if options.horizons is not None and (options.fast or options.height is not None or options.azimuths is not None):
+    made = options.horizons is not None and options.ensemble is None
+    if made and (options.fast or options.height is not None or options.azimuths is not None):
         raise Failed("--fast, --height, --azimuths: accepted: without --horizons, which are made already")
     options.height = HEIGHT if options.height is None else options.height
     options.azimuths = AZIMUTHS if options.azimuths is None else options.azimuths
