@@ -132,7 +132,8 @@ def main():
         section = report.section("Light around the site")
         section.text("A lunation by steps of two hours, two metres above the ground; obstacles are the generated terrain.")
         section.figure(figure(lambda f: draw_maps(f, maps(scene, terrain, options.out, start, spacing), (x, y)), (9.0, 3.4)),
-                       "Mean part of the Sun's disc, longest night, and time in sight of a station that sees the pole 10 degrees high. The cross is the site.")
+                       "Mean part of the Sun's disc, longest night, and time in sight of a station at which the pole stands 10 degrees or more above the "
+                       "horizon. The cross is the site.")
 
         found = ridge(scene, report, start, end)
         if found:
@@ -200,7 +201,7 @@ def draw_maps(figure, made, site):
                                           ("lit [%]", "longest night [h]", "direct to Earth [%]"), ("inferno", "viridis_r", "cividis")):
         shown = axes.imshow(values, extent=[0.001 * edge for edge in edges], cmap=colors)
         axes.plot(0.001 * site[0], 0.001 * site[1], "+", color="#30d0ff", markersize=10)
-        axes.set(xlabel="map x [km]", title=name)
+        axes.set(xlabel="map x [km]", ylabel="map y [km]", title=name)
         figure.colorbar(shown, ax=axes, shrink=0.8)
 
 

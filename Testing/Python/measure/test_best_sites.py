@@ -230,6 +230,10 @@ def test_the_command(capsys, tmp_path):
     assert code == 0 and "mast 20 m, 1: " in text, err
     assert before == {path.name: path.stat().st_mtime_ns for path in (tmp_path / "maps").glob("horizons*")} and len(before) == 2
     assert (tmp_path / "sites.png").read_bytes().startswith(b"\x89PNG")
+    (tmp_path / "maps" / "options.json").rename(tmp_path / "options.json")
+    code, _, err = run(capsys, *command)  # as maps of a version that did not keep them
+    assert code == 1 and "options.json, which tells how its maps were made, is not there" in err, err
+    (tmp_path / "options.json").rename(tmp_path / "maps" / "options.json")
     for words, text in ((("--radius", 0), "--radius 0.0"), (("--maps", tmp_path / "none"), "accepted: a folder that exists"),
                         (("--azimuths", 12), "--azimuths is 12, and its maps were made with 36"), (("--cell-size", 0.1), "--cell-size is 0.1"),
                         (("--site", "10.8,-84.5"), "the extent of --site and --radius is"), (("--fast",), "--fast is True"),

@@ -49,8 +49,7 @@ void MarchEdges(const std::vector<EdgeStep>& steps, unsigned groups, const float
 // difference over the body's radius.
 void MarchEdgesFast(const std::vector<EdgeStep>& steps, unsigned groups, float base,
                     const float* heights, const float* z, float* tangents);
-// Raises all of them.
-// `width`: of a row of heights.
+// Raises the tangents of all HorizonLanes posts. `width`: of a row of heights.
 void MarchCells(const std::vector<CellStep>& steps, const float* heights, std::ptrdiff_t width,
                 float lane, const float* z, float* tangents);
 

@@ -25,8 +25,8 @@ struct HorizonOptions {
   // sight is followed on a great circle between more places, and where columns crowd about a pole
   // of a degree grid of up to 131072 columns at every edge too.
   bool fine = false;
-  // About twice as fast, to half a degree where slopes are up to 0.3. Beyond `FastExact` posts the
-  // samples are 1 / FastExact of the distance apart. The sweep skips ground that cannot raise a
+  // About 1.6 times as fast, to half a degree where slopes are up to 0.3. Beyond `FastExact` posts
+  // the samples are 1 / FastExact of the distance apart. The sweep skips ground that cannot raise a
   // horizon by more than FastSlack.
   bool fast = false;
   static constexpr int FastExact = 24;

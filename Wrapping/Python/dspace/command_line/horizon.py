@@ -24,7 +24,7 @@ def add_arguments(parser):
                         "command continues a map that was interrupted")
     parser.add_argument("--height", type=float, metavar="H", help="above the ground [m], 0 or more (default: 2); not with --frame")
     parser.add_argument("--fast", action="store_true",
-                        help="--map: horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
+                        help="--map: horizons to some half a degree, in about two thirds of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N",
                         help="evenly spaced, clockwise from north, 1 to 1000000 (default: 360)")
     parser.add_argument("--method", choices=("exact", "image", "both"), default="exact",

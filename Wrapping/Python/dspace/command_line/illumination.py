@@ -25,7 +25,7 @@ def add_arguments(parser):
     parser.add_argument("--height", type=float, metavar="H",
                         help=f"without --horizons: above the ground [m], 0 to 1e6 (default: {HEIGHT:g})")
     parser.add_argument("--fast", action="store_true",
-                        help="horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
+                        help="horizons to some half a degree, in about two thirds of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, metavar="N",
                         help=f"without --horizons: of the horizons, 1 to 3600 (default: {AZIMUTHS})")
     parser.add_argument("--from", dest="start", required=True, metavar="UTC",
@@ -111,7 +111,7 @@ def check_before(ground, options):
     if not start < end:
         raise Failed(f"--from {options.start}, --to {options.end}: the span from the start to the end is {end - start:g} s; accepted: more than 0")
     if not ground.crs:
-        raise Failed(f"--terrain '{options.terrain}': it has no longitudes and latitudes, so the Sun's direction is not known; accepted: a "
+        raise Failed(f"terrain '{options.terrain or options.recording}': it has no longitudes and latitudes, so the Sun's direction is not known; accepted: a "
                      "raster with a CRS, or --crs")
 
 

@@ -18,7 +18,7 @@ def write_page(out, found, rows, figure):
     import dspace
     page = dspace.Report(f"dspace {sys.argv[1] if len(sys.argv) > 1 else 'measurement'}")
     section = page.section("Result")
-    section.values({told: values[0] for told, values in columns_of([{name: value for name, value in found.items()
+    section.values({name: values[0] for name, values in columns_of([{name: value for name, value in found.items()
                                                                      if not isinstance(value, (list, dict))}])})
     if figure is not None:
         section.figure(figure)
@@ -27,8 +27,8 @@ def write_page(out, found, rows, figure):
     for name, table in tables:
         if name:
             section = page.section(name.replace("_", " ").capitalize())
-        told = columns_of(table)
-        section.table([dict(zip((each for each, _ in told), row)) for row in zip(*(values for _, values in told))])
+        columns = columns_of(table)
+        section.table([dict(zip((head for head, _ in columns), row)) for row in zip(*(values for _, values in columns))])
     given = {"command": shlex.join(["dspace", *sys.argv[1:]])}
     if found.get("terrain") and pathlib.Path(found["terrain"]).is_file():
         given["terrain"] = pathlib.Path(found["terrain"])
@@ -37,9 +37,9 @@ def write_page(out, found, rows, figure):
 
 
 def columns_of(rows):
-    """[(name, values)] of a table of dicts with the same keys, without columns that have no value: "from_lon_deg" is told as
-    "from lon [deg]", and rounded to what is measured."""
-    told = []
+    """Returns [(name, values)] for a table of dicts with the same keys. The name "from_lon_deg" becomes "from lon [deg]". Values are
+    rounded by their unit. Columns without any value are left out."""
+    columns = []
     for name in rows[0] if rows else ():
         values = [row[name] for row in rows]
         values = [value.item() if isinstance(value, np.generic) else value for value in values]
@@ -47,7 +47,7 @@ def columns_of(rows):
             continue
         ending = max((each for each in UNITS if name.endswith(each)), key=len, default=None)
         if ending is None:
-            told.append((name.replace("_", " "), values))
+            columns.append((name.replace("_", " "), values))
             continue
         unit, decimals = UNITS[ending]
         numbers = [value for value in values if isinstance(value, float) and np.isfinite(value)]
@@ -55,5 +55,5 @@ def columns_of(rows):
             unit, values = "km", [value / 1000.0 if isinstance(value, float) else value for value in values]
         # -0.0 is 0.
         values = [round(value, decimals) + 0.0 if decimals and isinstance(value, float) else value for value in values]
-        told.append((f"{name[:-len(ending)].replace('_', ' ')} [{unit}]".strip(), values))
-    return told
+        columns.append((f"{name[:-len(ending)].replace('_', ' ')} [{unit}]".strip(), values))
+    return columns

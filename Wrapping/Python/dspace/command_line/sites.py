@@ -26,7 +26,7 @@ def add_arguments(parser):
     parser.add_argument("--to", dest="end", required=True, metavar="UTC", help="the end, which is no step itself")
     parser.add_argument("--step", type=float, default=3600.0, metavar="S", help="[s] (default: 3600)")
     parser.add_argument("--fast", action="store_true",
-                        help="horizons to some half a degree, in about half of the time (default: to 0.01 degrees)")
+                        help="horizons to some half a degree, in about two thirds of the time (default: to 0.01 degrees)")
     parser.add_argument("--azimuths", type=int, default=360, metavar="N", help="of the horizons, 1 to 3600 (default: 360)")
     parser.add_argument("--cell-size", type=float, default=0.0, metavar="S",
                         help="spacing of the cells in map units, up to 64 posts (default: the raster's pixels)")
@@ -102,6 +102,8 @@ def maps_of(ground, folder, mast, extent, options):
 def require_same(path, options):
     """Keeps the options of the horizons beside the maps. Rejects others than those that are there; the ground is in the maps."""
     if not path.exists():
+        if any(path.parent.glob("horizons_*.tif")):
+            raise Failed(f"--maps '{path.parent}': {path.name}, which tells how its maps were made, is not there; accepted: another folder")
         atomic_write(path, json.dumps(options, indent=2).encode())
         return
     try:

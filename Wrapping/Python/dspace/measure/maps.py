@@ -33,7 +33,7 @@ class Maps:
         1e6. azimuths: evenly spaced, 1 to 3600, clockwise from true north, and from the map's Y axis on a plane and in a polar
         projection (MapFile.first_deg).
         extent: map coordinates (left, top, right, bottom); default: the whole terrain. cell_size: in map units, brought to a
-        whole number of the terrain's posts, 1 to 64; 0: the terrain's pixels. fast=True: in about half of the time, to some
+        whole number of the terrain's posts, 1 to 64; 0: the terrain's pixels. fast=True: in about two thirds of the time, to some
         half a degree where slopes are up to 0.3; default: to 0.01 degrees.
 
         The work runs in `threads` of its own (0: as many as the processor runs at once). progress: a function that is
